@@ -59,6 +59,7 @@ static int find_modes(const modes_request *r, const problem *scene, const dvi_fi
   (void)dvi_field_unknowns(field, &unknowns);
   int code = status == DVI_OK ? print_modes(r, scene, eigenvalue, unknowns, zeros)
                               : library_error(status);
+  if (status == DVI_BAD_SIZE) code = USAGE; /* more modes than the field has */
   if (code == DONE && r->vtu != NULL)
     code = field_write(field, r->vtu, "mode", (int)r->count, mode);
   free(eigenvalue);

@@ -321,9 +321,9 @@ static const char *const details[] = {
     "fewer end with exit code 3,\n"
     "and with a step or a method that would do. It costs seven times the run; with IDA fourteen, "
     "or seven and about 2 s.\n"
-    "It takes every method, --time-transform, --step-control and events; not --out, --events, "
-    "--plot, --alarm, --every or\n"
-    "checkpoints.\n",
+    "It takes every mechanical method, --time-transform, --step-control and events; no marches of "
+    "fields, --out, --events,\n"
+    "--plot, --alarm, --every or checkpoints.\n",
     "--plot draws the columns of --columns, or of the scene; default: six coordinates, places and "
     "angles before directions, of a\n"
     "body that only turns its angular velocity; and how energy and other invariants change. "

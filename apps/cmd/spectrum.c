@@ -132,6 +132,8 @@ static int copy_series(spectrum_study *s)
 
 /* ---- the band ---- */
 
+static const double pi = 3.14159265358979323846;
+
 /* Read "LO:HI", of which one may be left out. */
 static int read_band(const char *text, dvi_spectrum_options *options)
 {
@@ -159,7 +161,10 @@ static int find_lines(spectrum_study *s)
   const dvi_status status = dvi_spectrum(s->samples, s->probes, s->series, s->interval, &options,
                                          (int)s->request->count, &s->lines, s->line, s->amplitude,
                                          s->phase, &s->report);
-  return status == DVI_OK ? DONE : library_error(status);
+  if (status == DVI_OK) return DONE;
+  code = library_error(status);
+  const double most = pi / s->interval;
+  return options.lowest < 0 || fmax(options.lowest, options.highest) > most ? USAGE : code;
 }
 
 /* ---- the table ---- */

@@ -415,6 +415,16 @@ says err 'for marches of fields' 'threads of a mechanical method'
 expect 2 'a march of no field' run kepler --method leapfrog
 expect 2 'monitors of a march' explain run.yaml --time-transform arclength
 says err 'follow no monitor' 'monitors of a march'
+expect 2 'more modes than there are' modes run.yaml --count 100000
+says err 'take 1 to ' 'more modes than there are'
+printf 't,q\n' >series.csv
+for i in $(seq 0 99); do echo "$i,$((i % 7))"; done >>series.csv
+for band in 1000:2000 1:2000 1000: -1:2; do
+  expect 2 "the band $band" spectrum series.csv --band $band
+  says err 'no band from .* tell frequencies from 0 to 3.14' "the band $band"
+done
+sed 's/,.*/,1/; s/^t.*/t,q/' series.csv >constant.csv
+expect 1 'constant rows' spectrum constant.csv
 printf '%s\n' "$grid" 'boundary: {cpml: 2}' >grid.yaml
 for command in modes stability solve explain order bench 'order --method verlet'; do
   # shellcheck disable=SC2086 # the words of a command

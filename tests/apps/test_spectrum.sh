@@ -74,7 +74,7 @@ expect 2 'an empty name' spectrum driven.csv --columns q,
 expect 2 'no band' spectrum driven.csv --band 3
 says err 'two angular frequencies' 'what a band is'
 expect 2 'an inverted band' spectrum driven.csv --band 3:2
-expect 1 'a band beyond the samples' spectrum driven.csv --band 3:90
+expect 2 'a band beyond the samples' spectrum driven.csv --band 3:90
 says err '0.1 apart tell frequencies from 0 to 31.4159' 'the highest frequency'
 expect 2 'a tolerance' spectrum driven.csv --tolerance 2
 expect 2 'a late time' spectrum driven.csv --from 59.95
