@@ -6,7 +6,7 @@
 
 static inline int dvi__heap_is_before(const double *key, int a, int b)
 {
-  return key[a] < key[b] || (key[a] == key[b] && a < b);
+  return key[a] == key[b] ? a < b : key[a] < key[b];
 }
 
 /* Let the number at a place sink to where it belongs, after its key has grown. */
