@@ -180,6 +180,35 @@ dvi__avi *ran_steps(const dvi__avi_terms *terms, const stepped *s, double t)
   return avi;
 }
 
+void run_string(int is_free, double damping, double fraction, double *values)
+{
+  static const double pi = 3.14159265358979323846;
+  loaded l = {.s = mesh_of_case(2)};
+  load_steps(&l, 1, damping);
+  l.s.terms.fraction = fraction;
+  l.s.terms.is_free = is_free;
+  double *A = zeros(l.s.edges);
+  const double *x = dvi_mesh_points(l.s.mesh);
+  dvi__avi *avi = avi_of(&l.s.terms);
+  for (int64_t e = 0; e < l.s.edges; e++) A[e] = sin(pi * x[e]);
+  ck_assert_int_eq(dvi__avi_start(avi, 0.5, A, NULL, NULL), DVI_OK);
+  advance_to(avi, 1.7);
+  take_form(avi, DVI_FORM_A, values);
+  take_form(avi, DVI_FORM_E, values + l.s.edges);
+  take_form(avi, DVI_FORM_B, values + 2 * l.s.edges);
+  dvi__avi_destroy(&avi);
+  free(A);
+  end_loaded(&l);
+}
+
+double string_error(int is_free, double damping, double fraction, const double *exact)
+{
+  double values[STRING_VALUES], worst = 0;
+  run_string(is_free, damping, fraction, values);
+  for (int i = 0; i < STRING_VALUES; i++) worst = fmax(worst, fabs(values[i] - exact[i]));
+  return worst;
+}
+
 void reload_steps(const dvi__avi *from, dvi__avi *to)
 {
   dvi__sections_writer writer;

@@ -57,6 +57,14 @@ void check_same(const stepped *s, const dvi__avi *a, const dvi__avi *b);
 /* Make a run from a random start to a time. */
 dvi__avi *ran_steps(const dvi__avi_terms *terms, const stepped *s, double t);
 
+/* Run a string of 12 unequal cells, under a current and dampings up to `damping` at a third of its
+ * vertices, from a half wave to a time amid its steps, and give A, E and B. */
+enum { STRING_VALUES = 13 + 13 + 12 };
+void run_string(int is_free, double damping, double fraction, double *values);
+
+/* Give the largest distance of such a run from the exact one. */
+double string_error(int is_free, double damping, double fraction, const double *exact);
+
 /* Take over the state of another run. */
 void reload_steps(const dvi__avi *from, dvi__avi *to);
 

@@ -58,7 +58,7 @@ typedef struct leapfrog {
   double *keep, *gain; /* [cells] coefficients of diagonal stars; keep is NULL for 1 */
   double *inverse;     /* [unknowns] 1/(M + dt/2 S) of diagonal stars */
   double *source;      /* [unknowns] of a wave, or NULL */
-  double *spare;       /* [cells + faces] */
+  double *spare;       /* [cells + 2*faces] */
   double *change;      /* [cells] of stars that are not diagonal, E' at t_n once it is needed */
   int64_t changed;     /* that n, or -1 */
   dvi__charge charge;
