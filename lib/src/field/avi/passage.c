@@ -52,12 +52,12 @@ dvi__avi_passage dvi__avi_passage_of(const dvi__avi *avi, int64_t e, double span
 {
   const dvi__avi_extra *extra = avi->extras + avi->extra[e];
   const double z = rate(avi, e) * span, change = expm1(-z), first = phi1_from(change, z);
-  double before = 0, after = 0, second = 0, uneven = 0;
+  const double second = extra->pushes > 0 ? phi2(z) : 0,
+               uneven = extra->pushes > 0 ? 0.5 * exp(-0.5 * z) : 0;
+  double before = 0, after = 0;
   for (int i = extra->push; i < extra->push + extra->pushes; i++) {
     before += avi->push[i].profile * half[2 * avi->push[i].current];
     after += avi->push[i].profile * half[2 * avi->push[i].current + 1];
-    second = phi2(z);
-    uneven = 0.5 * exp(-0.5 * z);
   }
   const double D = avi->D[e],
                mean = first * D - (second + uneven) * before - (second - uneven) * after,
