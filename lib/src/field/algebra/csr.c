@@ -60,7 +60,7 @@ void dvi_matrix_destroy(dvi_matrix **matrix)
 
 /* ---- copies ---- */
 
-dvi_status dvi__csr_transpose(const dvi_matrix *A, dvi__csr *transpose)
+static dvi_status transpose_of(const dvi_matrix *A, dvi__csr *transpose)
 {
   DVI_TRY(dvi__csr_allocate(A->columns, A->rows, dvi_matrix_entries(A), transpose));
   int64_t *start = transpose->start;
@@ -83,9 +83,9 @@ dvi_status dvi__csr_transpose(const dvi_matrix *A, dvi__csr *transpose)
 dvi_status dvi__csr_copy(const dvi_matrix *A, dvi__csr *copy)
 {
   dvi__csr transpose;
-  DVI_TRY(dvi__csr_transpose(A, &transpose));
+  DVI_TRY(transpose_of(A, &transpose));
   const dvi_matrix view = dvi__csr_view(&transpose, 0);
-  const dvi_status status = dvi__csr_transpose(&view, copy);
+  const dvi_status status = transpose_of(&view, copy);
   dvi__csr_clear(&transpose);
   return status;
 }
@@ -233,7 +233,7 @@ dvi_status dvi__csr_product(const dvi_matrix *A, const dvi_matrix *B, dvi__csr *
 dvi_status dvi__csr_transposed_product(const dvi_matrix *A, const dvi_matrix *B, dvi__csr *product)
 {
   dvi__csr transpose = {0};
-  DVI_TRY(dvi__csr_transpose(A, &transpose));
+  DVI_TRY(transpose_of(A, &transpose));
   const dvi_matrix view = dvi__csr_view(&transpose, 0);
   const dvi_status status = dvi__csr_product(&view, B, product);
   dvi__csr_clear(&transpose);

@@ -24,9 +24,8 @@ dvi_matrix dvi__csr_view(const dvi__csr *matrix, int symmetric);
 /* Give the matrix to a user, who calls dvi_matrix_destroy. The struct is zero then. */
 dvi_status dvi__csr_give(dvi__csr *matrix, int symmetric, dvi_matrix **given);
 
-/* Make copies, transposes, A + B and A B. On failure nothing is owned. Entries that cancel stay. */
+/* Make copies, A + B and A B. On failure nothing is owned. Entries that cancel stay. */
 dvi_status dvi__csr_copy(const dvi_matrix *A, dvi__csr *copy);
-dvi_status dvi__csr_transpose(const dvi_matrix *A, dvi__csr *transpose);
 dvi_status dvi__csr_sum(const dvi_matrix *A, const dvi_matrix *B, dvi__csr *sum);
 dvi_status dvi__csr_product(const dvi_matrix *A, const dvi_matrix *B, dvi__csr *product);
 
