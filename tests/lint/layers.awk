@@ -55,6 +55,12 @@ BEGIN {
   sees["field/tents"] = sees["field/avi"]
   sees["field/method"] = sees["field/avi"] " field/avi field/tents"
   sees["field/spectra"] = "core"
+  sees["field/multiscale"] = "core num field/algebra"
+  sees["field/space"] = "core num field/algebra field/mesh field/multiscale"
+  sees["field/density"] = "core num field/algebra field/space"
+  sees["field/schroedinger"] = "core num march field/algebra field/space field/density"
+  sees["field/multisymplectic"] = "core num march field/algebra"
+  sees["field/moving"] = "core num"
   # The library of scenes includes libdvi's public headers, too.
   sees["text"] = ""
   sees["expr"] = "text"
@@ -65,7 +71,8 @@ BEGIN {
   sees["scene/terms"] = sees["scene/elaborate"] " scene/elaborate"
   sees["scene/sections"] = sees["scene/terms"] " scene/terms"
   sees["scene/field"] = sees["scene/sections"] " scene/sections"
-  sees["scene"] = sees["scene/field"] " scene/field"
+  sees["scene/density"] = sees["scene/sections"] " scene/sections"
+  sees["scene"] = sees["scene/field"] " scene/field scene/density"
   sees["scene/emit"] = sees["scene"] " scene"
   # The command includes public headers and those of the problems, too.
   uses["cli"] = ""

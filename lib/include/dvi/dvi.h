@@ -6,6 +6,7 @@
 #include <dvi/basis.h>
 #include <dvi/contact.h>
 #include <dvi/control.h>
+#include <dvi/density.h>
 #include <dvi/diagnostics.h>
 #include <dvi/ensemble.h>
 #include <dvi/field.h>
@@ -26,6 +27,7 @@
 #include <dvi/run.h>
 #include <dvi/sensitivity.h>
 #include <dvi/shapes.h>
+#include <dvi/space.h>
 #include <dvi/spectrum.h>
 #include <dvi/status.h>
 #include <dvi/system.h>
