@@ -56,7 +56,7 @@ BEGIN {
   sees["field/method"] = sees["field/avi"] " field/avi field/tents"
   sees["field/spectra"] = "core"
   sees["field/multiscale"] = "core num field/algebra"
-  sees["field/space"] = "core num field/algebra field/mesh field/multiscale"
+  sees["field/space"] = "core num space field/algebra field/mesh field/multiscale"
   sees["field/density"] = "core num field/algebra field/space"
   sees["field/schroedinger"] = "core num march field/algebra field/space field/density"
   sees["field/multisymplectic"] = "core num march field/algebra"
