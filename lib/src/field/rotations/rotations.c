@@ -1,5 +1,5 @@
-/* A field of rotations R(t,x), with differences in space that are rotations, too. With the volumes w
- * of the nodes and the areas over the lengths s of the edges its Lagrangian is
+/* A field of rotations R(t,x), with differences in space that are rotations, too. With the volumes
+ * w of the nodes and the areas over the lengths s of the edges its Lagrangian is
  *
  *     L = sum_a w_a Omega_a.J Omega_a/2 - sum_ab s_ab tr((I - R_a^T R_b) Kd) - sum_a w_a V(R_a),
  *     Kd = tr(K)/2 I - K,
