@@ -8,7 +8,8 @@ BEGIN {
   # for all of its sub-rooms.
   sees["core"] = ""
   sees["num/simd"] = "core"
-  sees["num"] = "core num/simd"
+  sees["num/fft"] = "core num/simd"
+  sees["num"] = "core num/simd num/fft"
   sees["group"] = "core num"
   sees["space"] = "core num"
   sees["solve"] = "core num"
