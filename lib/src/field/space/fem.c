@@ -1,9 +1,9 @@
 /* Continuous functions that are polynomials of degree k on each cell, by their values at k+1 nodes
  * of Gauss and Lobatto, the ends of the cell among them.
  *
- * The quadrature is that of Gauss with k+1 points, which is exact for the products of two functions.
- * With lumped=yes the nodes are the quadrature points. The mass is diagonal then, and the eigenvalues
- * keep their order 2k (Karniadakis and Sherwin 2005, sec. 2.3.4). */
+ * The quadrature is that of Gauss with k+1 points, which is exact for the products of two
+ * functions. With lumped=yes the nodes are the quadrature points. The mass is diagonal then, and
+ * the eigenvalues keep their order 2k (Karniadakis and Sherwin 2005, sec. 2.3.4). */
 #include "core/status.h"
 #include "field/space/lagrange.h"
 #include "space/quadrature.h"

@@ -2,8 +2,8 @@
  *
  * f is sampled on a product of points: the nodes of an axis that interpolates, else its quadrature
  * points. Along an axis of the second sort samples become coefficients by the least squares of the
- * quadrature, M U = B^T W f with the mass M = B^T W B. Axes follow one another, because the matrices
- * are Kronecker products. */
+ * quadrature, M U = B^T W f with the mass M = B^T W B. Axes follow one another, because the
+ * matrices are Kronecker products. */
 #include "field/space/interpolate.h"
 
 #include <math.h>

@@ -1,9 +1,9 @@
 /* Kinds of spaces, and what they fill in.
  *
- * A kind of one axis is a file with one const dvi__kind, declared at the end of this header and named
- * in the list of kinds.c. Its `create` fills a dvi__line: cells, the numbering of their local
- * functions, and the quadrature points of a cell. Its `local` evaluates the local functions. Points,
- * operators, products of axes, boundaries, evaluation and interpolation follow from these.
+ * A kind of one axis is a file with one const dvi__kind, declared at the end of this header and
+ * named in the list of kinds.c. Its `create` fills a dvi__line: cells, the numbering of their local
+ * functions, and the quadrature points of a cell. Its `local` evaluates the local functions.
+ * Points, operators, products of axes, boundaries, evaluation and interpolation follow from these.
  *
  * A kind whose functions are no products of those of axes, as on a mesh, is a dvi__domain. Its file
  * fills a dvi_space, and dvi_space_create calls it. */
@@ -108,8 +108,8 @@ static inline int64_t dvi__line_points(const dvi__line *line)
 /* Make the matrix [points x functions] of a derivative. */
 dvi_status dvi__line_operator(const dvi__line *line, int order, dvi__csr *matrix);
 
-/* Give the row of a derivative at x with at most `locals` entries, and return their number, 0 outside
- * of the axis. */
+/* Give the row of a derivative at x with at most `locals` entries, and return their number, 0
+ * outside of the axis. */
 int dvi__line_row(const dvi__line *line, int order, double x, int *column, double *value);
 
 /* ---- spaces of any dimension ---- */

@@ -17,8 +17,8 @@ void dvi__lagrange_destroy(void *basis);
 /* Give derivatives of all polynomials [count] at s. */
 void dvi__lagrange_evaluate(const dvi__lagrange *basis, int order, double s, double *value);
 
-/* What fem, legendre and chebyshev have in common: polynomials of a degree on each of the cells of a
- * line, with nodes in [0,1]. Lumped ones take the nodes, with their weights, as quadrature. */
+/* What fem, legendre and chebyshev have in common: polynomials of a degree on each of the cells of
+ * a line, with nodes in [0,1]. Lumped ones take the nodes, with their weights, as quadrature. */
 dvi_status dvi__line_interpolate(int degree, const long double *mark, dvi__line *line);
 dvi_status dvi__line_lump(int degree, const long double *weight, dvi__line *line);
 void dvi__line_polynomials(const dvi__line *line, int order, int64_t cell, double s, double *value);

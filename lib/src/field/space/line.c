@@ -134,8 +134,8 @@ void dvi__explain_gauss(const dvi__line *line, dvi__note *note)
 
 /* ---- rows ---- */
 
-/* Write the values of local functions as a row with ascending columns. Functions that a periodic axis
- * of few cells names twice are added. Zeros are left out. */
+/* Write the values of local functions as a row with ascending columns. Functions that a periodic
+ * axis of few cells names twice are added. Zeros are left out. */
 static int gather_row(const dvi__line *line, int64_t cell, const double *local, int *column,
                       double *value)
 {

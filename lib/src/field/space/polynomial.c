@@ -2,8 +2,8 @@
  *
  * legendre has the nodes of Gauss and Lobatto, which are the quadrature points. chebyshev has the
  * extrema of Chebyshev's polynomial, (1 - cos(pi j/N))/2 on [0,1], and N+1 points of Gauss, so that
- * the mass is exact (Karniadakis and Sherwin 2005, secs. 2.3 and 2.4). Both span the same space, and
- * what differs is the quadrature. */
+ * the mass is exact (Karniadakis and Sherwin 2005, secs. 2.3 and 2.4). Both span the same space,
+ * and what differs is the quadrature. */
 #include "core/status.h"
 #include "field/space/lagrange.h"
 #include "space/quadrature.h"

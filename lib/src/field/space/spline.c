@@ -1,12 +1,13 @@
 /* B-splines of degree p with p-1 continuous derivatives at the ends of the cells.
  *
- * Knots are the ends of the cells. Those beyond the ends of the axis are the ends themselves, or on a
- * periodic axis the knots of the next period. Function r of cell c is B_{c-p+r,p}. Its derivative is
+ * Knots are the ends of the cells. Those beyond the ends of the axis are the ends themselves, or on
+ * a periodic axis the knots of the next period. Function r of cell c is B_{c-p+r,p}. Its derivative
+ * is
  *
  *     B'_{i,d} = d [ B_{i,d-1} / (t_{i+d} - t_i) - B_{i+1,d-1} / (t_{i+d+1} - t_{i+1}) ],
  *
- * so that derivatives of order r take the splines of degree p-r and this formula r times. Sources: de
- * Boor 1978, ch. X; Piegl and Tiller 1997, algorithm A2.2. */
+ * so that derivatives of order r take the splines of degree p-r and this formula r times. Sources:
+ * de Boor 1978, ch. X; Piegl and Tiller 1997, algorithm A2.2. */
 #include "core/status.h"
 #include "field/space/kind.h"
 
