@@ -37,7 +37,7 @@ static int square(int64_t count, const double *x, double *f, void *user)
 static dvi_status find_sites(dvi_density *density)
 {
   if (density->site != NULL) return DVI_OK;
-  density->site = DVI_NEW(double, density->dimension *density->functions);
+  density->site = DVI_NEW(double, density->dimension * density->functions);
   if (density->site == NULL) return no_memory();
   for (int d = 0; d < density->dimension; d++)
     DVI_TRY(dvi_space_interpolate(density->space, coordinate, &d,
@@ -84,10 +84,11 @@ static dvi_status check(const dvi_density *density, const dvi_density_condition 
     return dvi__fail(DVI_BAD_ARGUMENT, "density: the condition on \"%s\" has no kind %d",
                      condition->part, (int)condition->kind);
   if (condition->component < -1 || condition->component >= density->components)
-    return dvi__fail(DVI_BAD_ARGUMENT,
-                     "density: the condition on \"%s\" is for component %d, 0 to %d, or -1 for all, "
-                     "possible",
-                     condition->part, condition->component, density->components - 1);
+    return dvi__fail(
+        DVI_BAD_ARGUMENT,
+        "density: the condition on \"%s\" is for component %d, 0 to %d, or -1 for all, "
+        "possible",
+        condition->part, condition->component, density->components - 1);
   if (condition->rate != NULL && condition->datum == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "density: the datum on \"%s\" has a rate, and no value",
                      condition->part);
@@ -321,8 +322,7 @@ static dvi_status add_flux(dvi_density *density, const dvi_density_condition *co
                                    .depends_on_time = condition->rate != NULL};
   if (!part->boundary || !part->name || !part->given.variable || !part->given.pair)
     return no_memory();
-  *part->boundary = (dvi__boundary_term){.given = *condition,
-                                         .is_moving = condition->rate != NULL};
+  *part->boundary = (dvi__boundary_term){.given = *condition, .is_moving = condition->rate != NULL};
   DVI_TRY(fill_points(density, count, function, part));
   density->count[DVI_DENSITY_QUADRATIC]++;
   double *datum = DVI_NEW(double, count);
@@ -342,10 +342,11 @@ dvi_status dvi__density_add_fluxes(dvi_density *density, const dvi_density_terms
     if (condition->kind != DVI_FREE || (condition->datum == NULL && condition->robin == 0))
       continue;
     if (density->dimension > 1)
-      return dvi__fail(DVI_UNSUPPORTED,
-                       "density: a flux is given on \"%s\" of a domain in %d dimensions, where only "
-                       "values can be fixed: add it to the density near the boundary",
-                       condition->part, density->dimension);
+      return dvi__fail(
+          DVI_UNSUPPORTED,
+          "density: a flux is given on \"%s\" of a domain in %d dimensions, where only "
+          "values can be fixed: add it to the density near the boundary",
+          condition->part, density->dimension);
     DVI_TRY(find_sites(density));
     for (int c = 0; c < density->components; c++)
       if (condition->component < 0 || condition->component == c)

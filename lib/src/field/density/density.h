@@ -13,16 +13,16 @@ enum { DVI__MODES_WITH_HESSIAN = 300 /* unknowns of a Fourier field whose Hessia
 /* A variable at the points, a sparse matrix of the coordinates: z = value.q + fixed + moving.G(t).
  * A column is given by its place in the list of the point's group. */
 typedef struct dvi__jet_rows {
-  int64_t *start;   /* [points+1] */
-  int *local;       /* [entries] */
-  double *value;    /* [entries] */
-  double *fixed;    /* [points] what values that do not move add. NULL for 0 */
-  dvi__csr moving;  /* [points x moving]. Without rows for 0 */
+  int64_t *start;  /* [points+1] */
+  int *local;      /* [entries] */
+  double *value;   /* [entries] */
+  double *fixed;   /* [points] what values that do not move add. NULL for 0 */
+  dvi__csr moving; /* [points x moving]. Without rows for 0 */
 } dvi__jet_rows;
 
 /* Points in a row whose variables depend on the same coordinates, as those of a cell. */
 typedef struct dvi__point_groups {
-  int *of;         /* [points] */
+  int *of; /* [points] */
   int64_t groups;
   int64_t *start;  /* [groups+1] */
   int *list;       /* coordinates of each, ascending */
@@ -53,8 +53,9 @@ typedef struct dvi__density_part {
   dvi__jet_rows *rows;      /* [variables] NULL for Fourier spaces */
   dvi__point_groups group;
   dvi__slots slots;
-  int64_t *low, *high;      /* [unknowns] points of coordinate i and later, and i and earlier */
-  dvi__space_operator *transform; /* [variables] of Fourier spaces */
+  int64_t *low, *high; /* [unknowns] points of coordinate i and later, and i and earlier */
+  dvi__space_operator *transform; /* [variables] */
+  int is_constant;                /* second derivatives do not depend on z */
 } dvi__density_part;
 
 /* The second derivatives of an integral. Columns of qv are those of v. */
@@ -69,13 +70,15 @@ typedef struct dvi__integral {
   dvi__density_part **part; /* [parts] */
   double sign;
   dvi__density_patterns patterns;
-  int reach;             /* largest distance of two coordinates that a point couples */
-  int has_ranges;        /* points of neighbours are neighbours */
-  int has_hessian;       /* full for Fourier spaces */
-  int depends_on_time;   /* also by data that move */
-  int has_rate;          /* the derivative in time is known */
-  const dvi__csr *less;  /* q.less q/2 is taken away, and q.load added. NULL for none */
+  int reach;           /* largest distance of two coordinates that a point couples */
+  int has_ranges;      /* points of neighbours are neighbours */
+  int has_hessian;     /* full for Fourier spaces */
+  int depends_on_time; /* also by data that move */
+  int has_rate;        /* the derivative in time is known */
+  const dvi__csr
+      *less; /* q.less q/2 is taken away, and q.load added, less a value. NULL for none */
   const double *load;
+  double less_value;
 } dvi__integral;
 
 /* Where an integral is evaluated. Missing vectors are 0. */
@@ -127,6 +130,9 @@ struct dvi_density {
   int mass_is_diagonal;
   double *load; /* [unknowns] minus the gradient of the quadratic parts at 0, without those in t */
   double rest;  /* value of the quadratic parts at 0 */
+  int has_rest; /* K and the load are not all of a Fourier field's quadratic parts */
+  dvi__csr gradients; /* row j is that of alpha_j. Constant if the one-form is linear */
+  int is_linear;
   double fastest;
 
   /* terms of a system */
@@ -143,7 +149,7 @@ struct dvi_density {
   } translation[DVI_AXES_MAX];
   int translations;
   int *no_start; /* [unknowns+1] of empty patterns */
-  int *mass_start, *stiffness_start;
+  int *mass_start, *stiffness_start, *gradients_start;
 };
 
 /* Copy the parts, and make their operators. */
@@ -155,7 +161,7 @@ dvi_status dvi__density_bind(dvi_density *density, dvi__density_part *part);
 void dvi__density_unbind(dvi__density_part *part);
 
 /* Refuse parts that are not of their kinds, by derivatives at some points. */
-dvi_status dvi__density_check_kinds(const dvi_density *density);
+dvi_status dvi__density_check_kinds(dvi_density *density);
 
 /* Find what conditions fix, and add parts for fluxes. */
 dvi_status dvi__density_fix(dvi_density *density, const dvi_density_terms *terms);
@@ -189,6 +195,9 @@ int dvi__part_sum_by_transforms(const dvi__integral *integral, const dvi__densit
 /* Return the doubles that a room of the field has. */
 int64_t dvi__density_room(const dvi_density *density);
 
+/* Make a matrix without values whose rows are the columns of a pattern. */
+dvi_status dvi__matrix_of_pattern(const dvi__pattern *pattern, dvi__csr *matrix);
+
 /* Make the mass, the stiffness, and the load. */
 dvi_status dvi__density_make_mass(dvi_density *density);
 dvi_status dvi__density_make_stiffness(dvi_density *density);
@@ -203,7 +212,8 @@ int64_t dvi__integral_entries(const dvi__integral *integral, const dvi__pattern 
 
 /* Make the one-form's gauge and refuse a singular two-form. */
 dvi_status dvi__density_fix_gauge(dvi_density *density);
-dvi_status dvi__density_check_two_form(const dvi_density *density);
+dvi_status dvi__density_check_two_form(dvi_density *density);
+dvi_status dvi__density_make_one_form(dvi_density *density);
 
 /* Make the terms of a system. */
 dvi_status dvi__density_make_terms(dvi_density *density, int translations);
@@ -211,7 +221,7 @@ dvi_status dvi__density_make_terms(dvi_density *density, int translations);
 /* Refuse a failure of a part at create, or a number that is not finite. */
 dvi_status dvi__density_refuse(const dvi_density *density, int failed, const char *where);
 
-/* Give the Hessian of all parts without rates at U, with a minus sign. */
-dvi_status dvi__density_hessian(const dvi_density *density, double t, const double *q,
-                                dvi__csr *hessian);
+/* Make the Hessian of all parts without rates at q, with a minus sign. */
+dvi_status dvi__density_hessian(const dvi_density *density, const double *q, dvi__csr *hessian);
+
 #endif

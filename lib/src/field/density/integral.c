@@ -253,9 +253,11 @@ static void subtract_quadratic(const dvi__integral *integral, const dvi__density
                                const dvi__density_sums *s)
 {
   const dvi__csr *K = integral->less;
+  if (s->value != NULL) *s->value -= integral->less_value;
   for (int64_t i = at->first; i < at->last; i++) {
     double sum = 0;
-    for (int64_t e = K->start[i]; e < K->start[i + 1]; e++) sum += K->value[e] * at->q[K->column[e]];
+    for (int64_t e = K->start[i]; e < K->start[i + 1]; e++)
+      sum += K->value[e] * at->q[K->column[e]];
     if (s->value != NULL) *s->value -= at->q[i] * (0.5 * sum - integral->load[i]);
     if (s->q != NULL) s->q[i - at->first] -= sum - integral->load[i];
   }

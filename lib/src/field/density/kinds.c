@@ -37,8 +37,8 @@ static double some_number(int a, int i)
 static dvi_status call(trial *s, int i)
 {
   const dvi_density_part *given = &s->part->given;
-  const int failed = given->density(1, given->depends_on_time ? 0.3 * i : 0, s->x, s->z[i], s->l + i,
-                                    s->l_z[i], s->l_zz[i], given->user);
+  const int failed = given->density(1, given->depends_on_time ? 0.3 * i : 0, s->x, s->z[i],
+                                    s->l + i, s->l_z[i], s->l_zz[i], given->user);
   if (failed != 0)
     return dvi__fail(DVI_CALLBACK_FAILED, "density: part '%s' returned %d", s->part->name, failed);
   double sum = s->l[i];
@@ -95,6 +95,15 @@ static dvi_status check_quadratic(const trial *s)
   return DVI_OK;
 }
 
+/* Tell if l_zz does not change. */
+static int has_constant_second(const trial *s)
+{
+  const double least = roundoff * fmax(size_of(s, 1), size_of(s, 2));
+  for (int e = 0; e < s->part->given.pairs; e++)
+    if (fabs(s->l_zz[2][e] - s->l_zz[1][e]) > least) return 0;
+  return 1;
+}
+
 /* l is the sum of rates times derivatives, and no rate is multiplied with one. */
 static dvi_status check_one_form(const trial *s)
 {
@@ -125,7 +134,7 @@ static dvi_status try_point(trial *s)
   return given->kind == DVI_DENSITY_ONE_FORM ? check_one_form(s) : check_quadratic(s);
 }
 
-static dvi_status check_part(const dvi_density *density, const dvi__density_part *part)
+static dvi_status check_part(const dvi_density *density, dvi__density_part *part)
 {
   const int pairs = part->given.pairs;
   trial s = {.density = density, .part = part};
@@ -133,15 +142,17 @@ static dvi_status check_part(const dvi_density *density, const dvi__density_part
   if (room == NULL) return dvi__fail(DVI_NO_MEMORY, "density: no memory for a test");
   for (int i = 0; i < 3; i++) s.l_zz[i] = room + i * pairs;
   dvi_status status = DVI_OK;
+  part->is_constant = 1;
   for (int i = 0; i < PLACES && status == DVI_OK; i++) {
     s.point = i * (part->points - 1) / (PLACES - 1);
     status = try_point(&s);
+    if (!has_constant_second(&s)) part->is_constant = 0;
   }
   dvi__release(room);
   return status;
 }
 
-dvi_status dvi__density_check_kinds(const dvi_density *density)
+dvi_status dvi__density_check_kinds(dvi_density *density)
 {
   for (int p = 0; p < density->declared; p++) {
     const dvi_density_kind kind = density->part[p].given.kind;

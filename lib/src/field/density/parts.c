@@ -89,8 +89,8 @@ static dvi_status check_part(const dvi_density *density, const dvi_density_part 
   if (part->density == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "density: part '%s' has no callback `density`", name);
   if (part->variables < 1 || part->variables > DVI_JETS_MAX || part->variable == NULL)
-    return dvi__fail(DVI_BAD_ARGUMENT, "density: part '%s' has %d variables, 1 to %d possible", name,
-                     part->variable != NULL ? part->variables : 0, (int)DVI_JETS_MAX);
+    return dvi__fail(DVI_BAD_ARGUMENT, "density: part '%s' has %d variables, 1 to %d possible",
+                     name, part->variable != NULL ? part->variables : 0, (int)DVI_JETS_MAX);
   if (part->time_derivative != NULL && !part->depends_on_time)
     return dvi__fail(DVI_BAD_ARGUMENT,
                      "density: part '%s' has a derivative in time, and does not depend on time",
@@ -379,9 +379,9 @@ void dvi__density_unbind(dvi__density_part *part)
     dvi__csr_clear(&rows->moving);
   }
   dvi__release(part->rows);
-  void *const arrays[] = {part->group.of, part->group.start, part->group.list, part->group.square,
-                          part->slots.qq, part->slots.qv,    part->slots.vv,   part->low,
-                          part->high};
+  void *const arrays[] = {part->group.of,     part->group.start, part->group.list,
+                          part->group.square, part->slots.qq,    part->slots.qv,
+                          part->slots.vv,     part->low,         part->high};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) dvi__release(arrays[i]);
   part->rows = NULL;
   part->group = (dvi__point_groups){0};

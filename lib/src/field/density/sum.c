@@ -19,7 +19,7 @@ typedef struct block {
   int64_t first;
   int count;
   double weight[BLOCK_MOST]; /* with the integral's sign */
-  double *room; /* [ROOM] */
+  double *room;              /* [ROOM] */
   double *x, *z, *l, *l_z, *l_zz;
 } block;
 
@@ -85,8 +85,7 @@ static void gather_variable(const block *b, int a)
     double sum = rows->fixed != NULL ? rows->fixed[point] : 0;
     for (int64_t e = rows->start[point]; e < rows->start[point + 1] && from != NULL; e++)
       sum += rows->value[e] * from[list[rows->local[e]]];
-    if (rows->moving.rows > 0)
-      sum += moving_row(&rows->moving, point, is_rate ? b->G_rate : b->G);
+    if (rows->moving.rows > 0) sum += moving_row(&rows->moving, point, is_rate ? b->G_rate : b->G);
     z[k] = sum;
   }
 }

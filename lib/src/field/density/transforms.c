@@ -114,8 +114,7 @@ static void add_pair(const spread *s, int e, int a, int b)
   const int64_t points = s->part->points;
   const double *l_zz = s->l_zz + e * points, *z = s->z + b * points;
   double *product = s->l_z + a * points;
-  for (int64_t k = 0; k < points; k++)
-    product[k] += s->sign * s->part->weight[k] * l_zz[k] * z[k];
+  for (int64_t k = 0; k < points; k++) product[k] += s->sign * s->part->weight[k] * l_zz[k] * z[k];
 }
 
 /* Add the second derivatives by rows and columns that are rates or not. */
@@ -159,9 +158,8 @@ int dvi__part_sum_by_transforms(const dvi__integral *integral, const dvi__densit
             has_second = sums->qq != NULL || sums->qv != NULL || sums->vv != NULL;
   find_variables(&s, at);
   const int failed = part->given.density((int)part->points, at->t, part->x, s.z,
-                                         sums->value != NULL ? s.l : NULL,
-                                         has_first ? s.l_z : NULL, has_second ? s.l_zz : NULL,
-                                         part->given.user);
+                                         sums->value != NULL ? s.l : NULL, has_first ? s.l_z : NULL,
+                                         has_second ? s.l_zz : NULL, part->given.user);
   if (failed != 0) return failed;
   for (int64_t k = 0; k < part->points && sums->value != NULL; k++)
     *sums->value += s.sign * part->weight[k] * s.l[k];
