@@ -83,10 +83,8 @@ static const dvi_jet rate = {.rate = 1}, value = {0}, slope = {.order = {1}},
                      slopes[2] = {{.order = {1, 0}}, {.order = {0, 1}}};
 static const int diagonal[2][2] = {{0, 0}, {1, 1}};
 
-const dvi_density_part kinetic_part = {.kind = DVI_DENSITY_KINETIC,
-                                       .variable = &rate,
-                                       .variables = 1,
-                                       .density = kinetic};
+const dvi_density_part kinetic_part = {
+    .kind = DVI_DENSITY_KINETIC, .variable = &rate, .variables = 1, .density = kinetic};
 const dvi_density_part elastic_part = {.name = "elastic",
                                        .kind = DVI_DENSITY_QUADRATIC,
                                        .variable = &slope,
@@ -148,10 +146,9 @@ density_field make_density_of(dvi_space *space, dvi_density_terms terms)
 density_field make_density(dvi_space *space, const dvi_density_part *part, int parts,
                            const dvi_density_condition *condition, int conditions)
 {
-  return make_density_of(space, (dvi_density_terms){.part = part,
-                                                    .parts = parts,
-                                                    .condition = condition,
-                                                    .conditions = conditions});
+  return make_density_of(
+      space, (dvi_density_terms){
+                 .part = part, .parts = parts, .condition = condition, .conditions = conditions});
 }
 
 void end_density(density_field *field)
@@ -167,8 +164,7 @@ void end_density(density_field *field)
 void set_density(density_field *field, field_function *u, field_function *rate_of, void *user)
 {
   double *rates = calloc((size_t)field->places, sizeof(double));
-  if (u != NULL)
-    ck_assert_int_eq(dvi_space_interpolate(field->space, u, user, field->U), DVI_OK);
+  if (u != NULL) ck_assert_int_eq(dvi_space_interpolate(field->space, u, user, field->U), DVI_OK);
   if (rate_of != NULL)
     ck_assert_int_eq(dvi_space_interpolate(field->space, rate_of, user, rates), DVI_OK);
   ck_assert_msg(dvi_density_project(field->density, field->U, rates, field->q, NULL, field->p) ==

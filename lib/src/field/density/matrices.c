@@ -51,6 +51,17 @@ dvi_status dvi__matrix_of_pattern(const dvi__pattern *pattern, dvi__csr *matrix)
   return DVI_OK;
 }
 
+/* Take roundings out, by which an entry differs from its mirror image. */
+static void make_symmetric(dvi__csr *matrix)
+{
+  for (int64_t i = 0; i < matrix->rows; i++)
+    for (int64_t e = matrix->start[i]; e < matrix->start[i + 1]; e++) {
+      if (matrix->column[e] >= i) break;
+      const int64_t mirror = dvi__csr_find(matrix, matrix->column[e], (int)i);
+      matrix->value[e] = matrix->value[mirror] = 0.5 * (matrix->value[e] + matrix->value[mirror]);
+    }
+}
+
 /* ---- the mass ---- */
 
 static int is_diagonal(const dvi__csr *matrix)
@@ -159,6 +170,7 @@ dvi_status dvi__density_make_mass(dvi_density *density)
                      density->kinetic.part[0]->name);
   DVI_TRY(
       check_finite(density, density->mass.start[density->unknowns], density->mass.value, "mass"));
+  make_symmetric(&density->mass);
   dvi__csr_drop_zeros(&density->mass);
   density->mass_is_diagonal = is_diagonal(&density->mass);
   DVI_TRY(check_diagonal(density, !density->mass_is_diagonal && density->components > 1));
@@ -204,6 +216,7 @@ dvi_status dvi__density_make_stiffness(dvi_density *density)
                                  : make_sparse_stiffness(density, zero);
   dvi__release(zero);
   for (int64_t i = 0; i < n && status == DVI_OK; i++) density->load[i] = -density->load[i];
+  if (status == DVI_OK) make_symmetric(&density->stiffness);
   if (status == DVI_OK) dvi__csr_drop_zeros(&density->stiffness);
   if (status == DVI_OK)
     status = check_finite(density, density->stiffness.start[n], density->stiffness.value,

@@ -161,7 +161,7 @@ static void take_step(search *s, double part, double size)
   s->length = part * largest(s->n, s->d) / s->scale;
 }
 
-/* Take one step. `is_done` tells that |F| falls no more. */
+/* Take one step. `is_done` tells that |F| falls no more, or q is right to roundoff. */
 static dvi_status advance(search *s, int *is_done)
 {
   double part = 1, size;
@@ -171,6 +171,7 @@ static dvi_status advance(search *s, int *is_done)
     DVI_TRY(try_step(s, part, &size));
     if (size < s->size * (1 - 1e-4 * part)) {
       take_step(s, part, size);
+      *is_done = s->length <= 4 * DBL_EPSILON;
       return DVI_OK;
     }
     if (largest(s->n, s->d) <= small_step * s->scale) break;

@@ -126,7 +126,7 @@ static void add_product(const block *b, int64_t point, const int pair[2], double
   const int *square = slots + g->square[of];
   for (int64_t i = A->start[point]; i < A->start[point + 1]; i++)
     for (int64_t j = B->start[point]; j < B->start[point + 1]; j++)
-      values[square[A->local[i] * size + B->local[j]]] += c * A->value[i] * B->value[j];
+      values[square[A->local[i] * size + B->local[j]]] += c * (A->value[i] * B->value[j]);
 }
 
 static void scatter_pair(const block *b, int e, const dvi__density_sums *s)

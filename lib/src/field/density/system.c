@@ -370,9 +370,9 @@ dvi_status dvi__density_make_terms(dvi_density *density, int translations)
     d->potential_term[count++] = part_term(d, d->potential + i);
   if (translations) declare_translations(d);
   d->terms = (dvi_system_terms){.dimension = (int)d->unknowns,
-                                .potentials = d->potential_term,
+                                .potentials = count > 0 ? d->potential_term : NULL,
                                 .potential_count = count,
-                                .symmetries = d->symmetry,
+                                .symmetries = d->translations > 0 ? d->symmetry : NULL,
                                 .symmetry_count = d->translations,
                                 .autonomous = is_autonomous(d)};
   declare_dynamics(d);
