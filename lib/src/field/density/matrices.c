@@ -1,5 +1,5 @@
-/* The constant matrices of a field: the mass of its kinetic parts, and the stiffness K and the load b
- * of its quadratic parts,
+/* The constant matrices of a field: the mass of its kinetic parts, and the stiffness K and the load
+ * b of its quadratic parts,
  *
  *     L = q'.M q'/2 - q.K q/2 + b.q - rest + ..
  *
