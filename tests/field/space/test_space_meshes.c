@@ -56,7 +56,7 @@ static void check_integral(const dvi_space *space, monomial *m)
 {
   const double *x, *weight;
   const int64_t points = dvi_space_points(space, &x, &weight);
-  double *f = malloc((size_t)points * sizeof *f), sum = 0, exact = 1;
+  double *f = calloc((size_t)points, sizeof *f), sum = 0, exact = 1;
   (void)monomial_at(points, x, f, m);
   for (int64_t k = 0; k < points; k++) sum += weight[k] * f[k];
   for (int d = 0; d < m->n; d++) exact /= m->power[d] + 1;
@@ -105,7 +105,7 @@ static void check_derivative(const dvi_space *space, monomial m, int d, const do
   const double *x, factor = d >= 0 ? m.power[d] : 1;
   const int64_t points = dvi_space_points(space, &x, NULL);
   double *u = malloc((size_t)points * sizeof *u), *exact = malloc((size_t)points * sizeof *exact),
-         place[3 * PLACES];
+         place[3 * PLACES] = {0};
   int order[3] = {0};
   unsigned long long seed = 4;
   if (d >= 0) order[d] = 1;

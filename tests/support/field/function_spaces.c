@@ -36,7 +36,7 @@ static void add_derivative(const dvi_space *space, int axis, int order, double *
   const int n = (int)dvi_space_functions(space);
   const double *weight;
   const int64_t points = dvi_space_points(space, NULL, &weight);
-  double *U = calloc((size_t)n, sizeof *U), *B = malloc((size_t)(n * points) * sizeof *B);
+  double *U = calloc((size_t)n, sizeof *U), *B = calloc((size_t)(n * points) + 1, sizeof *B);
   int orders[DVI_AXES_MAX] = {0};
   orders[axis] = order;
   for (int i = 0; i < n; i++) {
@@ -87,7 +87,7 @@ int space_eigenvalues_inside(const dvi_space *space, const char *part, double *l
   int64_t fixed;
   const int *function = dvi_space_boundary(space, part, &fixed);
   const int n = forms.n;
-  int *inner = malloc((size_t)n * sizeof *inner), count = 0;
+  int *inner = calloc((size_t)n + 1, sizeof *inner), count = 0;
   for (int i = 0, at = 0; i < n; i++)
     if (at < fixed && function[at] == i)
       at++;
