@@ -308,7 +308,7 @@ START_TEST(kdv_agrees_with_differences)
     density_field field = make_kdv(kinds[i]);
     char text[600];
     dvi_density_explain(field.density, text, sizeof text);
-    ck_assert_msg(strstr(text, "1 constants left out") != NULL, "%s", text);
+    ck_assert_msg(strstr(text, "1 constant left out") != NULL, "%s", text);
     ck_assert_msg(strstr(text, "one-form: constant gradients") != NULL, "%s", text);
     check_density(&field, 1e-6);
     end_density(&field);

@@ -77,7 +77,7 @@ START_TEST(threads_share_a_field)
     density_field field = pendula(kinds[i]);
     const int n = (int)field.n;
     dvi_ensemble *ensemble = create_ensemble(field.system, "galerkin:degree=2", options);
-    double *q = calloc((size_t)(3 * n * MEMBERS), sizeof *q), *p = q + n * MEMBERS,
+    double *q = calloc(3 * MEMBERS * (size_t)n, sizeof *q), *p = q + n * MEMBERS,
            *last = p + n * MEMBERS;
     for (int e = 0; e < n * MEMBERS; e++) {
       q[e] = field.q[e / MEMBERS] * (1 + 0.1 * (e % MEMBERS));
