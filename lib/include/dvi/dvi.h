@@ -28,6 +28,7 @@
 #include <dvi/run.h>
 #include <dvi/sensitivity.h>
 #include <dvi/shapes.h>
+#include <dvi/sines.h>
 #include <dvi/space.h>
 #include <dvi/spectrum.h>
 #include <dvi/status.h>
