@@ -95,9 +95,6 @@ bool dvi__is_unknown(const char *name, char letter);
 /* What marches observe beside the probes. The last one is NULL. */
 extern const char *const dvi__observable[];
 
-/* Let a run show energy, momenta and probes. */
-bool dvi__choose_field_columns(dvi_scene *scene);
-
 /* Place the probes, and declare them as what is watched. */
 bool dvi__probes_make(dvi_scene *scene);
 
