@@ -240,13 +240,13 @@ static int good_points(int least)
 }
 
 /* Give a Fourier axis more points than the degree of a polynomial density times its modes, so that
- * its integrals are exact. */
+ * its integrals are exact. Its own choice does so up to the degree 4. */
 static void choose_points(struct dvi__scene_density *s, int d)
 {
   static const char start[] = "fourier:modes=";
   const char *kind = s->axis[d].kind;
   char *rest;
-  if (strncmp(kind, start, sizeof start - 1) != 0 || s->degree <= 2) return;
+  if (strncmp(kind, start, sizeof start - 1) != 0 || s->degree <= 4) return;
   const long modes = strtol(kind + sizeof start - 1, &rest, 10);
   if (*rest != '\0' || modes < 1 || modes > 1000000 / s->degree) return;
   (void)dvi__print(s->chosen[d], sizeof s->chosen[d], "%s%ld,points=%d", start, modes,
