@@ -9,6 +9,7 @@
 #include "csv/balance.h"
 #include "cli/command.h"
 #include "cli/spelling.h"
+#include "load/density.h"
 
 enum { MESSAGE_SIZE = 1024, WORD_SIZE = 64, HINT_SIZE = 128 };
 
@@ -193,7 +194,9 @@ int open_wish(const char *command, const problem *scene, const char **method)
   if (*method != NULL) return DONE;
   return usage_error("%s: --method is missing, for example --method %s; see dvi list methods",
                      command,
-                     dvi_scene_field(scene->scene) != NULL ? "leapfrog" : "galerkin:degree=4");
+                     density_of(scene) != NULL               ? "verlet"
+                     : dvi_scene_field(scene->scene) != NULL ? "leapfrog"
+                                                             : "galerkin:degree=4");
 }
 
 int refuse_noise(const char *command, const problem *scene)

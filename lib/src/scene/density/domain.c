@@ -174,6 +174,25 @@ static bool list_fields(dvi_scene *scene, const dvi__tree *section)
                            "beside 'schroedinger' there is one field, which is complex");
 }
 
+/* Write names for the components of a field, psi_re and psi_im, or w_1, w_2. */
+static bool name_components(dvi_scene *scene, const dvi__declared_field *field)
+{
+  static const char *const part[] = {"re", "im"};
+  for (int k = 0; k < field->components; k++) {
+    const size_t size = strlen(field->name) + 24;
+    char *label = dvi__arena_take(&scene->arena, size, 1);
+    if (label == NULL) return dvi__scene_no_memory(scene);
+    if (field->is_complex)
+      (void)dvi__print(label, size, "%s_%s", field->name, part[k]);
+    else if (field->is_vector)
+      (void)dvi__print(label, size, "%s_%d", field->name, k + 1);
+    else
+      (void)dvi__print(label, size, "%s", field->name);
+    scene->density->component[field->first + k] = label;
+  }
+  return true;
+}
+
 static bool add_name(dvi_scene *scene, const char *name, dvi__span span, int rank, int first,
                      int size)
 {
@@ -198,14 +217,17 @@ static bool name_place(dvi_scene *scene)
   scene->coordinate = dvi__arena_take(&scene->arena, (size_t)(dimension + s->fields),
                                       sizeof *scene->coordinate);
   scene->zeros = dvi__arena_take(&scene->arena, 2 * (size_t)scene->n, sizeof *scene->zeros);
-  if (scene->coordinate == NULL || scene->zeros == NULL) return dvi__scene_no_memory(scene);
+  s->component = dvi__arena_take(&scene->arena, (size_t)s->jets.components, sizeof *s->component);
+  if (scene->coordinate == NULL || scene->zeros == NULL || s->component == NULL)
+    return dvi__scene_no_memory(scene);
   scene->jets = &s->jets;
   for (int d = 0; d < dimension; d++)
     if (!add_name(scene, s->jets.axis[d], s->axis_span[d], 0, d, 1)) return false;
   for (int i = 0; i < s->fields; i++) {
     const dvi__declared_field *field = s->field + i;
     if (!add_name(scene, field->name, field->span, field->is_vector, dimension + field->first,
-                  field->components))
+                  field->components) ||
+        !name_components(scene, field))
       return false;
   }
   return true;

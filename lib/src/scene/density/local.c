@@ -159,7 +159,7 @@ static bool read_component(dvi__context *c, dvi__node node, unsigned may, dvi__l
 bool dvi__local_read(dvi_scene *scene, const dvi__tree *tree, unsigned may, const char *where,
                      int count, dvi__local **local)
 {
-  char shape[48];
+  char shape[48], needed[48];
   const dvi__expression *e;
   dvi__context c;
   if (!dvi__tree_expression(scene, tree, &e) ||
@@ -170,9 +170,10 @@ bool dvi__local_read(dvi_scene *scene, const dvi__tree *tree, unsigned may, cons
   const bool fits = count == 1 ? value.shape.rank == 0
                                : value.shape.rank == 1 && value.shape.rows == count;
   if (good && !fits)
-    good = dvi__scene_refuse(scene, tree->span, "%s is %s here, where %s%.0d is needed", where,
-                             dvi__shape_text(value.shape, shape, sizeof shape),
-                             count == 1 ? "a number" : "a vector of ", count == 1 ? 0 : count);
+    good = dvi__scene_refuse(
+        scene, tree->span, "%s is %s here, where %s is needed", where,
+        dvi__shape_text(value.shape, shape, sizeof shape),
+        dvi__shape_text((dvi__shape){count > 1, count, 1}, needed, sizeof needed));
   for (int k = 0; k < count && good; k++)
     good = read_component(&c, value.node == NULL ? value.one : value.node[k], may, local + k);
   dvi__context_free(&c);

@@ -68,6 +68,7 @@ struct dvi__scene_density {
   const char *kind;       /* of the space, or NULL */
   dvi__declared_field *field;
   int fields;
+  const char **component; /* [components] names for columns */
   dvi_density_condition *condition;
   int conditions, condition_room;
   bool has_moving_values;           /* a fixed value depends on t */
