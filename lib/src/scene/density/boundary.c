@@ -111,7 +111,7 @@ static bool read_condition(dvi_scene *scene, const char *part, const dvi__tree *
   for (int i = 0; i < tree->count; i++) {
     const dvi__declared_field *field = dvi__field_named(scene, tree->key[i]->text);
     if (field == NULL)
-      return dvi__scene_refuse(scene, tree->key[i]->span, "there is no field '%s'",
+      return dvi__scene_refuse(scene, tree->key[i]->span, "there is no field '%s' in 'fields'",
                                tree->key[i]->text);
     const extent one = {part, field->first, field->components};
     const dvi__tree *is = tree->child[i];

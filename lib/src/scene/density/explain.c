@@ -1,4 +1,5 @@
 /* What was found and built, as lines of text. */
+#include <dvi/number.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -19,7 +20,7 @@ static void add(note *to, const char *format, ...)
   const size_t used = strlen(to->text);
   va_list arguments;
   va_start(arguments, format);
-  (void)vsnprintf(to->text + used, to->size - used, format, arguments);
+  (void)dvi_number_vprint(to->text + used, to->size - used, format, arguments);
   va_end(arguments);
 }
 

@@ -24,7 +24,7 @@ static bool read_point(dvi_scene *scene, const dvi__tree *tree, double *point)
   const int axes = scene->density->jets.dimension;
   const bool is_list = tree->kind == DVI__SEQUENCE;
   if ((is_list ? tree->count : 1) != axes || tree->kind == DVI__MAPPING)
-    return dvi__scene_refuse(scene, tree->span, "a point has %d coordinate%s here", axes,
+    return dvi__scene_refuse(scene, tree->span, "%s has %d coordinate%s here", "a point", axes,
                              axes == 1 ? "" : "s");
   for (int d = 0; d < axes; d++)
     if (!dvi__tree_number(scene, is_list ? tree->child[d] : tree, "a coordinate", point + d))
