@@ -190,6 +190,6 @@ dvi_status dvi__space_sample(int dimension, const dvi__sampled *f, int64_t count
 extern const dvi__kind *const dvi__kinds[];
 extern const dvi__kind dvi__fem, dvi__spline, dvi__legendre_element, dvi__chebyshev_element,
     dvi__fourier;
-extern const dvi__domain dvi__box, dvi__torus;
+extern const dvi__domain dvi__box, dvi__torus, dvi__simplices;
 
 #endif
