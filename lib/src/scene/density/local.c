@@ -255,6 +255,7 @@ static int evaluate_all(const dvi__local *local, int64_t count, double t, const 
 {
   const int most = limit_points(local);
   int failed = 0;
+  if (count == 0) return 0;
   if (count <= most) return evaluate(local, (int)count, t, x, z, to);
   for (int64_t from = 0; from < count && failed == 0; from += most) {
     const int some = (int)(count - from < most ? count - from : most);
