@@ -238,8 +238,7 @@ static int wave_rate(int64_t count, const double *x, double *f, void *user)
 }
 
 /* The errors are those of a numpy program of the same midpoint rule, with p = M_II v + M_ID G' and
- * the boundary's values at the middle of a step. Without M_ID G'' the last one is 1.2e-5 by chance,
- * and the others are not of order 2. */
+ * the boundary's values at the middle of a step. */
 START_TEST(values_that_move_stay_in_the_lagrangian)
 {
   static const double expected[] = {6.0851864e-4, 1.5198081e-4, 3.7691973e-5};

@@ -193,18 +193,29 @@ static dvi_status box_row(const dvi_space *space, const int *order, const double
 
 /* ---- description ---- */
 
+static void explain_line(const dvi__line *line, dvi__note *note)
+{
+  dvi__note_add(note, "axis %s, %g to %g%s: %s", line->name, line->from, line->to,
+                line->periodic ? ", periodic" : "", line->kind->form.name);
+  if (line->degree > 0) dvi__note_add(note, ", degree %d", line->degree);
+  dvi__note_add(note, ", %lld %s: %lld functions, ", (long long)line->cells,
+                line->cells == 1 ? "cell" : "cells", (long long)line->functions);
+  line->kind->explain(line, note);
+  dvi__note_add(note, "\n");
+}
+
+void dvi__explain_product(const dvi_space *space, dvi__note *note)
+{
+  if (space->dimension > 1)
+    dvi__note_add(note, "product of %d axes: %lld functions, %lld points\n", space->dimension,
+                  (long long)space->functions, (long long)space->points);
+}
+
 static void box_explain(const dvi_space *space, dvi__note *note)
 {
-  for (int d = 0; d < space->dimension; d++) {
-    const dvi__line *line = &space->line[d];
-    dvi__note_add(note, "axis %s, %g to %g%s: %s", line->name, line->from, line->to,
-                  line->periodic ? ", periodic" : "", line->kind->form.name);
-    dvi__note_add(note, ", degree %d, %lld %s: %lld functions, ", line->locals - 1,
-                  (long long)line->cells, line->cells == 1 ? "cell" : "cells",
-                  (long long)line->functions);
-    line->kind->explain(line, note);
-    dvi__note_add(note, "\n");
-  }
+  for (int d = 0; d < space->dimension; d++) explain_line(&space->line[d], note);
+  dvi__explain_product(space, note);
+  if (space->is_nodal) dvi__note_add(note, "the mass is diagonal\n");
 }
 
 const dvi__domain dvi__box = {

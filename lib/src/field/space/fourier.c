@@ -305,6 +305,7 @@ static void torus_explain(const dvi_space *space, dvi__note *note)
     fourier_explain(line, note);
     dvi__note_add(note, "\n");
   }
+  dvi__explain_product(space, note);
 }
 
 const dvi__domain dvi__torus = {
