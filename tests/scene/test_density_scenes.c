@@ -227,7 +227,7 @@ END_TEST
  * are halved, here below the one of the method. */
 START_TEST(ends_that_move_carry_a_wave)
 {
-  double value[2][4];
+  double value[2][8];
   for (int k = 0; k < 2; k++) {
     char text[TEXT_SIZE];
     (void)snprintf(text, sizeof text,
@@ -235,7 +235,7 @@ START_TEST(ends_that_move_carry_a_wave)
                    "density: u'^2/2 - d(u,x)^2/2\n"
                    "boundary: {left: {fixed: sin(t)}, right: {fixed: sin(t - x)}}\n"
                    "initial: {u: sin(-x), u': cos(x)}\n"
-                   "probes: {square: {integral: (u - sin(t - x))^2}}\n"
+                   "probes: {square: {integral: (u - sin(t - x))^2}, rate: {integral: u'}}\n"
                    "method: galerkin:degree=4\nstep: 0.05\nuntil: 2\n",
                    4 << k);
     run_scene(text, value[k]);
@@ -244,6 +244,7 @@ START_TEST(ends_that_move_carry_a_wave)
   const double order = log2(sqrt(value[0][place] / value[1][place]));
   ck_assert_msg(order > 2.8, "order %.2f", order);
   ck_assert_msg(sqrt(value[1][place]) < 1e-4, "%g", sqrt(value[1][place]));
+  requires_near(value[1][watched("rate")], sin(2) - sin(1), 1e-4);
 }
 END_TEST
 

@@ -105,18 +105,16 @@ typedef struct state {
   double *U, *rate, *z, *f;
 } state;
 
-/* Find the rates of all coefficients. Those that are fixed do not move. */
+/* Find the rates of all coefficients. */
 static dvi_status find_rates(const dvi_scene *scene, double t, const double *q, const double *p,
                              double *rate)
 {
-  int64_t unknowns;
-  const int *place = dvi_density_unknowns(scene->density->density, &unknowns);
   const dvi_system *system = dvi_scene_system(scene);
-  double *v = dvi__heap_take((size_t)unknowns + 1, sizeof *v);
+  double *v = dvi__heap_take((size_t)scene->n, sizeof *v);
   dvi_status status = v == NULL        ? DVI_NO_MEMORY
                       : system == NULL ? DVI_UNSUPPORTED
                                        : dvi_system_velocity(system, t, q, p, v);
-  for (int64_t i = 0; i < unknowns && status == DVI_OK; i++) rate[place[i]] = v[i];
+  if (status == DVI_OK) status = dvi_density_lift_rate(scene->density->density, t, v, rate);
   dvi__heap_free(v);
   return status;
 }
@@ -199,10 +197,7 @@ static bool try_probe(dvi_scene *scene, struct dvi__density_probe *probe)
                          dvi_last_error());
   for (int k = 0; k < probe->function->variables; k++)
     if (!check_order(scene, probe->function, k)) return false;
-  return !(probe->has_rates && s->has_moving_values) ||
-         dvi__scene_refuse(scene, probe->span,
-                           "the probe '%s' has rates, which are not known where fixed values move",
-                           probe->name);
+  return true;
 }
 
 static bool name_is_new(dvi_scene *scene, const struct dvi__density_probe *probe)

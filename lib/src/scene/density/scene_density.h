@@ -71,7 +71,6 @@ struct dvi__scene_density {
   const char **component; /* [components] names for columns */
   dvi_density_condition *condition;
   int conditions, condition_room;
-  bool has_moving_values;           /* a fixed value depends on t */
   bool has_placed_data;             /* a value or a flux depends on position */
   dvi__local **start, **start_rate; /* [components] or NULL for 0 */
   struct dvi__density_probe *probe; /* [probes] */

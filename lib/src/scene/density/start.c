@@ -3,6 +3,7 @@
 
 #include "scene/density/scene_density.h"
 #include "scene/sections/sections.h"
+#include "scene/terms/fault.h"
 
 /* Split u' into the field's name and the mark of a rate. */
 static const dvi__declared_field *field_of_key(const dvi_scene *scene, const char *text,
@@ -53,6 +54,17 @@ static int start_at(int64_t count, const double *x, double *f, void *user)
   return dvi__local_value(user, count, 0, x, f);
 }
 
+/* Complain of a start that has no value somewhere, at the part of the expression that has none. */
+static bool complain(dvi_scene *scene, dvi_status status)
+{
+  dvi__span span;
+  const char *words;
+  if (dvi__fault_place(&span, &words))
+    return dvi__complain(scene->complaint, DVI_NOT_FINITE, span, "at the start: %s", words);
+  return dvi__complain(scene->complaint, status, dvi__tree_find(scene->tree, "initial")->span,
+                       "at the start: %s", dvi_last_error());
+}
+
 static bool interpolate(dvi_scene *scene, dvi__local *const *start, double *U)
 {
   const struct dvi__scene_density *s = scene->density;
@@ -60,15 +72,14 @@ static bool interpolate(dvi_scene *scene, dvi__local *const *start, double *U)
     if (start[c] == NULL || start[c]->term == NULL) continue;
     const dvi_status status = dvi_space_interpolate(s->space, start_at, start[c],
                                                     U + c * s->functions);
-    if (status != DVI_OK)
-      return dvi__complain(scene->complaint, status, dvi__tree_find(scene->tree, "initial")->span,
-                           "the start: %s", dvi_last_error());
+    if (status != DVI_OK) return complain(scene, status);
   }
   return true;
 }
 
 bool dvi__density_start(dvi_scene *scene, double *U, double *rate)
 {
+  dvi__fault_clear();
   return interpolate(scene, scene->density->start, U) &&
          interpolate(scene, scene->density->start_rate, rate);
 }

@@ -84,6 +84,7 @@ static bool input_derivative(dvi__context *c, int input, dvi__span span, int axi
 
 static dvi__value along(dvi__context *c, dvi__value value, int axis, dvi__span span)
 {
+  c->graph->here = span;
   return dvi__chain_rule(c, value, span, input_derivative, axis);
 }
 
