@@ -6,6 +6,7 @@
 
 #include "scene/density/scene_density.h"
 #include "scene/sections/sections.h"
+#include "scene/terms/fault.h"
 #include "text/heap.h"
 
 /* ---- the parts ---- */
@@ -119,6 +120,8 @@ static dvi_status make_field(dvi_scene *scene)
 static bool complain(dvi_scene *scene, dvi_status status)
 {
   const dvi__tree *boundary = dvi__tree_find(scene->tree, "boundary");
+  if (status == DVI_CALLBACK_FAILED && dvi__fault_status() != DVI_OK) status = dvi__fault_status();
+  if (status == DVI_NO_MEMORY) return dvi__scene_no_memory(scene);
   const char *sentence = dvi_last_error();
   const bool is_of_boundary = boundary != NULL && (strstr(sentence, "boundary") != NULL ||
                                                    strstr(sentence, "condition") != NULL);
@@ -244,6 +247,7 @@ static void set_form(dvi_scene *scene)
 
 static bool make(dvi_scene *scene)
 {
+  dvi__fault_clear();
   if (!check_motion(scene) || !dvi__density_make_space(scene) || !check_orders(scene)) return false;
   const dvi_status status = make_field(scene);
   if (status != DVI_OK) return complain(scene, status);

@@ -117,8 +117,8 @@ static bool make_function(dvi_scene *scene, dvi__local *local, dvi__kernels *lis
   if (term == NULL) return dvi__scene_no_memory(scene);
   const dvi_status status = dvi__function_create(list->count, list->kernel, &blocks,
                                                  &term->function);
-  list->count = 0; /* the kernels were moved */
   if (status != DVI_OK) return dvi__scene_no_memory(scene);
+  list->count = 0; /* the kernels were moved */
   term->scene = scene;
   term->next = scene->functions;
   scene->functions = local->term = term;

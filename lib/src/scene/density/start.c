@@ -59,6 +59,8 @@ static bool complain(dvi_scene *scene, dvi_status status)
 {
   dvi__span span;
   const char *words;
+  if (status == DVI_CALLBACK_FAILED && dvi__fault_status() != DVI_OK) status = dvi__fault_status();
+  if (status == DVI_NO_MEMORY) return dvi__scene_no_memory(scene);
   if (dvi__fault_place(&span, &words))
     return dvi__complain(scene->complaint, DVI_NOT_FINITE, span, "at the start: %s", words);
   return dvi__complain(scene->complaint, status, dvi__tree_find(scene->tree, "initial")->span,
