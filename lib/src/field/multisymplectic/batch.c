@@ -20,19 +20,30 @@ int64_t dvi__batch_work(const dvi__lattice *lattice)
     variables = variables > lattice->part[i].variables ? variables : lattice->part[i].variables;
     pairs = pairs > lattice->part[i].pairs ? pairs : lattice->part[i].pairs;
   }
-  return (int64_t)DVI__BATCH * (2 + lattice->axes + 3 * variables + pairs);
+  return (int64_t)DVI__BATCH * (2 + 2 * lattice->axes + 3 * variables + pairs);
 }
 
-/* Set the places and weights in space of the points of a batch. */
+/* Move to the next cell, the last axis first. */
+static void next_cell(const dvi__lattice *lattice, int *index)
+{
+  int d = lattice->axes - 1;
+  while (d > 0 && index[d] + 1 == lattice->axis[d].cells) index[d--] = 0;
+  index[d]++;
+}
+
+/* Set the widths of a batch's cells, and the places and weights in space of their points. */
 static void place_points(const dvi__batch *b)
 {
   const dvi__lattice *lattice = b->lattice;
-  for (int c = 0, i = 0; c < b->cells; c++) {
-    int index[DVI_AXES_MAX];
+  int index[DVI_AXES_MAX];
+  dvi__lattice_cell(lattice, b->cell, index);
+  for (int c = 0, i = 0; c < b->cells; c++, next_cell(lattice, index)) {
     double volume = 1;
-    dvi__lattice_cell(lattice, b->cell + c, index);
-    for (int d = 0; d < lattice->axes; d++)
-      volume *= lattice->axis[d].node[index[d] + 1] - lattice->axis[d].node[index[d]];
+    for (int d = 0; d < lattice->axes; d++) {
+      const double *ends = lattice->axis[d].node + index[d];
+      b->width[d * b->cells + c] = ends[1] - ends[0];
+      volume *= ends[1] - ends[0];
+    }
     for (int q = 0; q < lattice->points; q++, i++) {
       b->weight[i] = volume / lattice->points;
       for (int d = 0; d < lattice->axes; d++) {
@@ -55,7 +66,8 @@ dvi__batch dvi__batch_begin(const dvi__lattice *lattice, const dvi__lattice_part
   b.weight = lattice->work;
   b.l = b.weight + count;
   b.x = b.l + count;
-  b.z = b.x + (size_t)lattice->axes * count;
+  b.width = b.x + (size_t)lattice->axes * count;
+  b.z = b.width + (size_t)lattice->axes * count;
   b.l_z = b.z + variables * count;
   b.more = b.l_z + variables * count;
   b.l_zz = b.more + variables * count;
@@ -83,14 +95,9 @@ static void corner_values(const dvi__batch *b, const dvi__row *row, const dvi__l
   }
 }
 
-/* What a variable's shape is divided by in a cell. */
-static double width_of(const dvi__batch *b, const dvi__lattice_variable *v, int64_t cell)
+double dvi__batch_width(const dvi__batch *b, const dvi__lattice_variable *v, int cell)
 {
-  int index[DVI_AXES_MAX];
-  if (v->axis < 0) return 1;
-  dvi__lattice_cell(b->lattice, cell, index);
-  const double *ends = b->lattice->axis[v->axis].node + index[v->axis];
-  return ends[1] - ends[0];
+  return v->axis < 0 ? 1 : b->width[v->axis * b->cells + cell];
 }
 
 void dvi__batch_variables(const dvi__batch *b, const dvi__row *row, double *z)
@@ -102,7 +109,7 @@ void dvi__batch_variables(const dvi__batch *b, const dvi__row *row, double *z)
     for (int c = 0; c < b->cells; c++, to += lattice->points) {
       double value[DVI__CORNERS];
       const int64_t cell = b->cell + c;
-      const double width = width_of(b, v, cell);
+      const double width = dvi__batch_width(b, v, c);
       corner_values(b, row, v, lattice->corner + cell * lattice->corners, value);
       for (int q = 0; q < lattice->points; q++) {
         const double *shape = lattice->shape[1 + v->axis][q];
@@ -126,7 +133,7 @@ void dvi__batch_add(const dvi__batch *b, const double *g, double *lower, double 
     for (int c = 0; c < b->cells; c++, from += lattice->points, w += lattice->points) {
       const int64_t cell = b->cell + c;
       const int *corner = lattice->corner + cell * lattice->corners;
-      const double width = width_of(b, v, cell);
+      const double width = dvi__batch_width(b, v, c);
       for (int k = 0; k < lattice->corners; k++) {
         double sum = 0;
         for (int q = 0; q < lattice->points; q++)

@@ -80,15 +80,6 @@ static void add_point(const dvi__batch *b, int q, const dvi__lattice_variable *r
           lattice->shape[1 + column->axis][q][j];
 }
 
-static double width_of(const dvi__batch *b, const dvi__lattice_variable *v)
-{
-  int index[DVI_AXES_MAX];
-  if (v->axis < 0) return 1;
-  dvi__lattice_cell(b->lattice, b->cell, index);
-  const double *ends = b->lattice->axis[v->axis].node + index[v->axis];
-  return ends[1] - ends[0];
-}
-
 /* Add a part's constant second derivatives, as far as they do not mix rates with other variables. */
 static dvi_status add_part(const dvi__lattice *lattice, const dvi__lattice_part *part, int64_t cell,
                            cell_matrices *m)
@@ -99,7 +90,7 @@ static dvi_status add_part(const dvi__lattice *lattice, const dvi__lattice_part 
   for (int p = 0; p < part->pairs; p++) {
     const dvi__lattice_variable *row = &part->variable[part->pair[p][0]],
                                 *column = &part->variable[part->pair[p][1]];
-    const double widths = width_of(&b, row) * width_of(&b, column);
+    const double widths = dvi__batch_width(&b, row, 0) * dvi__batch_width(&b, column, 0);
     if (part->varies[p] || row->is_rate != column->is_rate) continue;
     for (int q = 0; q < b.count; q++) {
       const double l_ab = b.l_zz[p * b.count + q] / widths;

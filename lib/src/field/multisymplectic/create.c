@@ -85,7 +85,8 @@ static dvi_status make_part(const dvi_multisymplectic_terms *terms, const dvi__l
 {
   const dvi_density_part *given = &terms->part[number];
   const int all = given->variables * (given->variables + 1) / 2;
-  const int levels = terms->weights.levels != 0 && given->kind == DVI_DENSITY_POTENTIAL;
+  const int levels = terms->weights.levels != 0 && given->kind == DVI_DENSITY_POTENTIAL,
+            is_constant = given->kind == DVI_DENSITY_KINETIC; /* rates are, from level to level */
   DVI_TRY(check_part(given, number));
   snprintf(part->name, sizeof part->name, "%s",
            given->name != NULL ? given->name : kind_name[given->kind]);
@@ -93,7 +94,7 @@ static dvi_status make_part(const dvi_multisymplectic_terms *terms, const dvi__l
   part->declared.name = NULL, part->declared.variable = NULL, part->declared.pair = NULL;
   part->variables = given->variables;
   part->pairs = given->pair != NULL ? given->pairs : all;
-  part->time = dvi__two_points_of(levels ? 0 : lattice->time_weight);
+  part->time = dvi__two_points_of(is_constant ? 0.25 : levels ? 0 : lattice->time_weight);
   part->variable = DVI_NEW(dvi__lattice_variable, part->variables);
   part->pair = (int(*)[2])dvi__allocate((size_t)part->pairs, sizeof *part->pair);
   part->varies = DVI_NEW(char, part->pairs);

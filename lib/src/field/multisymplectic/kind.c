@@ -17,9 +17,8 @@
 
 void dvi__lattice_march_clear(dvi__lattice_march *m)
 {
-  dvi__linear_destroy(&m->matrix);
+  dvi__lattice_solver_clear(&m->solver);
   dvi__lattice_clear(&m->lattice);
-  dvi__release(m->values);
   dvi__release(m->all);
 }
 
@@ -58,8 +57,7 @@ static dvi_status allocate(dvi__lattice_march *m)
                             &m->kept[0], &m->kept[1], &m->change, &m->rate};
   const size_t count = sizeof place / sizeof *place;
   m->all = DVI_NEW(double, count *size);
-  m->values = DVI_NEW(double, dvi__pattern_entries(&m->lattice.pattern));
-  if (m->all == NULL || m->values == NULL)
+  if (m->all == NULL)
     return dvi__fail(DVI_NO_MEMORY, "multisymplectic: no memory for %lld values",
                      (long long)m->lattice.size);
   for (size_t i = 0; i < count; i++) *place[i] = m->all + i * size;
@@ -74,7 +72,11 @@ dvi_status dvi__lattice_march_make(const dvi_multisymplectic_terms *terms, dvi__
   DVI_TRY(dvi__lattice_make_pattern(lattice));
   DVI_TRY(allocate(m));
   m->mean_rate = terms->mean_rate != 0;
-  DVI_TRY(dvi__linear_create(&lattice->pattern, DVI__LINEAR_SPARSE, NULL, &m->matrix));
+  const dvi__lattice_solver_terms equations = {.pattern = &lattice->pattern,
+                                               .axes = lattice->axes,
+                                               .is_symmetric = lattice->is_symmetric,
+                                               .is_exact = lattice->is_linear};
+  DVI_TRY(dvi__lattice_solver_make(&equations, &m->solver));
   if (!lattice->is_linear) return DVI_OK;
   return dvi__lattice_factor(m, 0, m->now, m->next);
 }

@@ -3,7 +3,7 @@
 #define DVI_FIELD_MULTISYMPLECTIC_LATTICE_H
 #include <dvi/multisymplectic.h>
 
-#include "num/linear.h"
+#include "num/pattern.h"
 
 enum {
   DVI__CORNERS = 8, /* of a cell in space, at most, and its points */
@@ -65,7 +65,8 @@ typedef struct dvi__lattice {
   int *unknown; /* [size] number of the unknown, or -1 */
   int unknowns;
   double time_weight, dt, bound;
-  int is_linear; /* second derivatives in a step's matrix are constant, as declared */
+  int is_symmetric; /* the matrix of a step */
+  int is_linear;    /* second derivatives in a step's matrix are constant, as declared */
   dvi__pattern pattern;
   double *work; /* of a batch */
 } dvi__lattice;
@@ -115,6 +116,7 @@ typedef struct dvi__batch {
   int64_t cell;
   int cells, count;
   double *weight, *x, *z, *l, *l_z, *l_zz; /* [count] and variables, pairs of them */
+  double *width;                           /* [axes*cells] */
   double *more;                            /* [variables*count] for use */
 } dvi__batch;
 
@@ -126,6 +128,9 @@ int64_t dvi__batch_work(const dvi__lattice *lattice);
 /* Begin a batch of a part with a cell, of at most `most` cells. The caller sets the times. */
 dvi__batch dvi__batch_begin(const dvi__lattice *lattice, const dvi__lattice_part *part,
                             int64_t cell, int most);
+
+/* What a variable's shape is divided by in a cell of the batch. */
+double dvi__batch_width(const dvi__batch *batch, const dvi__lattice_variable *variable, int cell);
 
 /* Evaluate variables [variables*count] of levels, the density, and the adjoint of the variables:
  * add weight times g.z, differentiated by both levels. */
@@ -163,8 +168,8 @@ dvi_status dvi__lattice_probe(dvi__lattice *lattice);
 /* Find the bound of the steps. */
 dvi_status dvi__lattice_find_bound(dvi__lattice *lattice);
 
-/* Make the pattern of the matrix of a step, the second derivative of a row's action by its lower and
- * its upper level, and set its values. */
+/* Make the pattern of the matrix of a step, minus the second derivative of a row's action by its
+ * lower and its upper level, and set its values. */
 dvi_status dvi__lattice_make_pattern(dvi__lattice *lattice);
 dvi_status dvi__lattice_matrix(const dvi__lattice *lattice, const dvi__row *row, double *values);
 

@@ -116,7 +116,7 @@ static dvi_status linearised_change(laws *s, const double *v, int n)
       if (k >= 0) m->change[k] = part[i] + (side == 0 ? 0 : m->change[k]);
     }
   }
-  return dvi__linear_solve(m->matrix, m->change);
+  return dvi__lattice_solver_solve(&m->solver, m->change);
 }
 
 /* Advance the solutions by a level. A second solution takes the first one's error away. */
@@ -130,7 +130,7 @@ static dvi_status advance_ways(laws *s, int n)
     double *v = s->way[w % WAYS], *next = v + (n + 1) * lattice->size;
     DVI_TRY(linearised_change(s, v, n));
     for (int64_t i = 0; i < lattice->size; i++)
-      if (lattice->unknown[i] >= 0) next[i] -= m->change[lattice->unknown[i]];
+      if (lattice->unknown[i] >= 0) next[i] += m->change[lattice->unknown[i]];
   }
   return DVI_OK;
 }

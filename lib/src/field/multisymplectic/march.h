@@ -2,6 +2,7 @@
 #ifndef DVI_FIELD_MULTISYMPLECTIC_MARCH_H
 #define DVI_FIELD_MULTISYMPLECTIC_MARCH_H
 #include "field/multisymplectic/lattice.h"
+#include "field/multisymplectic/solver.h"
 #include "march/kind.h"
 
 /* Levels are `step` steps behind t0, and one before and one after that. The momenta of a level are
@@ -13,8 +14,7 @@ typedef struct dvi__lattice_march {
   int64_t step;
   double *before, *now, *next, *p_now, *p_next;
   /* The matrix of a step, where it was computed, and a copy of that place */
-  dvi__linear *matrix;
-  double *values; /* [entries] */
+  dvi__lattice_solver solver;
   double factored_at, kept_at;
   double *factored[2], *kept[2];
   /* What a step computes */

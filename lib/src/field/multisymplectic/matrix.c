@@ -1,5 +1,5 @@
-/* The matrix of a step: the second derivative of a row's action by its lower and its upper level.
- * It decides how fast the equations of a level converge, and not their solution. */
+/* The matrix of a step: minus the second derivative of a row's action by its lower and its upper
+ * level, close to the mass over dt. It decides how fast the equations of a level converge, and not their solution. */
 #include <math.h>
 #include <string.h>
 
@@ -48,12 +48,26 @@ static void probe_part(const dvi__lattice *lattice, dvi__lattice_part *part, dou
   }
 }
 
+/* The levels change their places in what mixes rates with other variables. */
+static int is_symmetric(const dvi__lattice *lattice)
+{
+  for (int i = 0; i < lattice->parts; i++) {
+    const dvi__lattice_part *part = &lattice->part[i];
+    for (int p = 0; p < part->pairs; p++)
+      if (!part->is_zero[p] &&
+          part->variable[part->pair[p][0]].is_rate != part->variable[part->pair[p][1]].is_rate)
+        return 0;
+  }
+  return 1;
+}
+
 dvi_status dvi__lattice_probe(dvi__lattice *lattice)
 {
   double *first = DVI_NEW(double, dvi__batch_work(lattice));
   if (first == NULL) return dvi__fail(DVI_NO_MEMORY, "multisymplectic: no memory for work");
   for (int i = 0; i < lattice->parts; i++) probe_part(lattice, &lattice->part[i], first);
   dvi__release(first);
+  lattice->is_symmetric = is_symmetric(lattice);
   return DVI_OK;
 }
 
@@ -170,14 +184,14 @@ no_memory:
 
 /* ---- values ---- */
 
-/* Add w l_ab of the points of a cell, differentiated by the lower level in variable a and by the
+/* Add -w l_ab of the points of a cell, differentiated by the lower level in variable a and by the
  * upper one in b. */
 static void add_entries(const dvi__batch *b, int cell, const dvi__lattice_variable *row,
                         const dvi__lattice_variable *column, const double *l_zz, double *values)
 {
   const dvi__lattice *lattice = b->lattice;
   const int *corner = lattice->corner + (b->cell + cell) * lattice->corners;
-  const double factor = b->duration * dependence(lattice, row, b->level, 0) *
+  const double factor = -b->duration * dependence(lattice, row, b->level, 0) *
                         dependence(lattice, column, b->level, 1);
   for (int j = 0; j < lattice->corners && factor != 0; j++) {
     const int of = lattice->unknown[column->component * lattice->vertices + corner[j]];
@@ -197,12 +211,8 @@ static void add_entries(const dvi__batch *b, int cell, const dvi__lattice_variab
 static void scale_by_widths(const dvi__batch *b, const dvi__lattice_variable *v, double *l_zz)
 {
   const int points = b->lattice->points;
-  for (int c = 0; c < b->cells && v->axis >= 0; c++) {
-    int index[DVI_AXES_MAX];
-    dvi__lattice_cell(b->lattice, b->cell + c, index);
-    const double *ends = b->lattice->axis[v->axis].node + index[v->axis];
-    for (int q = 0; q < points; q++) l_zz[c * points + q] /= ends[1] - ends[0];
-  }
+  for (int c = 0; c < b->cells && v->axis >= 0; c++)
+    for (int q = 0; q < points; q++) l_zz[c * points + q] /= dvi__batch_width(b, v, c);
 }
 
 static dvi_status add_matrix(void *of, const dvi__batch *b)

@@ -3,7 +3,7 @@
  * With S(u0, u1) for the action of a row of cells, levels u0 and u1 and their momenta fulfil
  *     p0 = -D_1 S(u0, u1),    p1 = D_2 S(u0, u1),
  * which are the discrete Euler-Lagrange equations of the vertices of u0. u1 is found by Newton's
- * method. Its matrix D_2 D_1 S is computed anew only if it converges slowly. */
+ * method. Its matrix -D_2 D_1 S is computed anew only if it converges slowly. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -25,10 +25,12 @@ dvi_status dvi__lattice_factor(dvi__lattice_march *m, double t, const double *lo
 {
   const size_t bytes = (size_t)m->lattice.size * sizeof(double);
   const dvi__row row = {.t = t, .u = {lower, upper}};
-  DVI_TRY(dvi__lattice_matrix(&m->lattice, &row, m->values));
-  const dvi_status status = dvi__linear_factor(m->matrix, m->values);
+  DVI_TRY(dvi__lattice_matrix(&m->lattice, &row, m->solver.values));
+  const dvi_status status = dvi__lattice_solver_renew(&m->solver);
   if (status != DVI_OK)
-    return dvi__fail_in(status, "multisymplectic: the matrix of a step of %g at t = %g",
+    return dvi__fail_in(status,
+                        "multisymplectic: a step of %g from t = %g is too long, or the "
+                        "density has no such steps",
                         m->lattice.dt, t);
   m->factored_at = t;
   if (m->factored[0] != lower) memcpy(m->factored[0], lower, bytes);
@@ -44,7 +46,7 @@ static dvi_status find_change(dvi__lattice_march *m, const dvi__row *row, const 
   DVI_TRY(dvi__row_gradient(lattice, row, m->lower, m->p));
   for (int64_t i = 0; i < lattice->size; i++)
     if (lattice->unknown[i] >= 0) m->change[lattice->unknown[i]] = p0[i] + m->lower[i];
-  DVI_TRY(dvi__linear_solve(m->matrix, m->change));
+  DVI_TRY(dvi__lattice_solver_solve(&m->solver, m->change));
   *largest = dvi__largest((size_t)lattice->unknowns, m->change);
   if (isfinite(*largest)) return DVI_OK;
   return dvi__fail(DVI_NOT_FINITE, "multisymplectic: the step from t = %g leaves the numbers",
@@ -54,7 +56,7 @@ static dvi_status find_change(dvi__lattice_march *m, const dvi__row *row, const 
 static void apply_change(dvi__lattice_march *m)
 {
   for (int64_t i = 0; i < m->lattice.size; i++)
-    if (m->lattice.unknown[i] >= 0) m->level[i] -= m->change[m->lattice.unknown[i]];
+    if (m->lattice.unknown[i] >= 0) m->level[i] += m->change[m->lattice.unknown[i]];
 }
 
 /* Solve for m->level, which holds a guess, from a level and its momenta, and set m->p. */
