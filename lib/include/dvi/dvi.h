@@ -25,6 +25,7 @@
 #include <dvi/path.h>
 #include <dvi/quadrature.h>
 #include <dvi/reference.h>
+#include <dvi/rotations.h>
 #include <dvi/run.h>
 #include <dvi/sensitivity.h>
 #include <dvi/shapes.h>
