@@ -30,14 +30,15 @@ extern "C" {
  *      e . A e = min over periodic w of the mean of a |e + grad w|^2
  *
  *  On one axis A is the harmonic mean of a. On two axes w is bilinear in each part. A is then an
- *  upper bound that falls to its limit as O(fine^-2) for smooth a, and more slowly for checkerboards,
- *  whose gradients are not bounded at corners.
+ *  upper bound that falls to its limit as O(fine^-2) for smooth a, and more slowly for
+ *  checkerboards, whose gradients are not bounded at corners.
  *
  *  @param[out] tensor  [axes*axes] row by row, symmetric. Unchanged on failure
  *  @retval DVI_BAD_ARGUMENT     an argument is missing, or an axis is empty
  *  @retval DVI_BAD_SIZE         axes or fine is out of range
- *  @retval DVI_BAD_OPTION       the parts are too few for the coefficient: its means, or those of
- *                               1/a, change by more than a tenth with twice as many
+ *  @retval DVI_BAD_OPTION       the parts do not see the coefficient: with twice as many, the mean
+ *                               of 1/a changes by more than a tenth on one axis, or that of a or
+ *                               1/a by more than a quarter on two
  *  @retval DVI_CALLBACK_FAILED  the coefficient failed
  *  @retval DVI_NOT_FINITE       the coefficient is not positive and finite
  *  @retval DVI_SINGULAR         the coefficient varies by too many powers of ten

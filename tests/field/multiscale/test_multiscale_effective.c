@@ -43,11 +43,10 @@ static int failing(int64_t count, const double *x, double *a, void *user)
   return x[0] > .5 ? 3 : 0;
 }
 
-/* fine = 16 centres see one phase of each wave, 32 another one. */
-static int aliased(int64_t count, const double *x, double *a, void *user)
+/* As many layers as `user` says. */
+static int many_layers(int64_t count, const double *x, double *a, void *user)
 {
-  (void)user;
-  for (int64_t i = 0; i < count; i++) a[i] = 2 + 1.5 * sin(2 * pi * 16 * x[i]);
+  for (int64_t i = 0; i < count; i++) a[i] = 2 + 1.5 * sin(2 * pi * *(double *)user * x[i]);
   return 0;
 }
 
@@ -181,10 +180,17 @@ START_TEST(bad_arguments_are_refused)
 }
 END_TEST
 
+/* 16 centres see one phase of 16 waves, 32 another one. 8 points do not see 13 waves. */
 START_TEST(coefficients_between_the_parts_are_refused)
 {
-  refuse(of(2, 16, aliased), DVI_BAD_OPTION, "take more parts");
-  refuse(of(1, 1, aliased), DVI_BAD_OPTION, "take more parts");
+  double periods = 16;
+  dvi_effective_options options = of(2, 16, many_layers);
+  options.user = &periods;
+  refuse(options, DVI_BAD_OPTION, "take more parts");
+  options = of(1, 1, many_layers);
+  options.user = &periods;
+  periods = 13;
+  refuse(options, DVI_BAD_OPTION, "take more parts");
 }
 END_TEST
 

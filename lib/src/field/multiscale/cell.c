@@ -1,9 +1,9 @@
 /* Local functions of a cell, on a patch of fine cells, which is the cell or surrounds it.
  *
  * Edges: linear; or solved, with a phi' constant along the edge, where `a` is the mean of both fine
- * cells at an edge, so that neighbours agree; or oversampled: the solutions psi with linear edges of
- * a larger patch are combined so that phi_k is 1 at corner k and 0 at the others. Neighbours do not
- * agree on their edge then, but the layer that linear values make is outside of the cell.
+ * cells at an edge, so that neighbours agree; or oversampled: the solutions psi with linear edges
+ * of a larger patch are combined so that phi_k is 1 at corner k and 0 at the others. Neighbours do
+ * not agree on their edge then, but the layer that linear values make is outside of the cell.
  * Source: Hou and Wu 1997, secs. 2 and 3. */
 #include "field/multiscale/cell.h"
 

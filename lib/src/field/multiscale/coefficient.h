@@ -11,10 +11,6 @@ typedef struct dvi__coefficient {
   void *user;
 } dvi__coefficient;
 
-/* Two integrals of the coefficient over a cell differ by more than this share: the coarser one does
- * not see the coefficient. */
-#define DVI__UNRESOLVED 0.1
-
 /* Set a [count] to the coefficient at x [axes*count], axis by axis. DVI_CALLBACK_FAILED, or
  * DVI_NOT_FINITE if it is not positive and finite. */
 dvi_status dvi__coefficient_sample(const dvi__coefficient *coefficient, int64_t count,

@@ -1,9 +1,10 @@
 /* Effective tensors by the periodic problem of a cell.
  *
  * Space: linear functions plus periodic bilinear elements on fine cells. Quadrature: exact, with a
- * constant in each fine cell. u_i = x_i + w_i is the stationary point of L = -1/2 int a |grad u_i|^2
- * among periodic w_i, and A_ij the mean of a grad u_i . grad u_j. On one axis a u' is constant, and A
- * is the harmonic mean. Source: Bensoussan, Lions and Papanicolaou 1978, ch. 1. */
+ * constant in each fine cell. u_i = x_i + w_i is the stationary point of
+ *     L = -1/2 int a |grad u_i|^2
+ * among periodic w_i, and A_ij the mean of a grad u_i . grad u_j. On one axis a u' is constant, and
+ * A is the harmonic mean. Source: Bensoussan, Lions and Papanicolaou 1978, ch. 1. */
 #include <dvi/multiscale.h>
 #include <math.h>
 

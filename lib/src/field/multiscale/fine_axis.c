@@ -1,5 +1,7 @@
 #include "field/multiscale/fine_axis.h"
 
+#include <math.h>
+
 #include "core/memory.h"
 #include "core/status.h"
 
@@ -36,7 +38,11 @@ int dvi__fine_axis_node(const dvi__fine_axis *axis, int cell, int right)
 
 int dvi__fine_axis_locate(const dvi__fine_axis *axis, double x, int *part, double *place)
 {
-  if (!(x >= axis->end[0] && x <= axis->end[axis->parts])) return 0;
+  const double from = axis->end[0], to = axis->end[axis->parts];
+  if (!isfinite(x)) return 0;
+  if (axis->is_periodic)
+    x = fmin(fmax(x - (to - from) * floor((x - from) / (to - from)), from), to);
+  if (x < from || x > to) return 0;
   int low = 0, high = axis->parts;
   while (high - low > 1) {
     const int middle = low + (high - low) / 2;

@@ -20,7 +20,8 @@ void dvi__fine_axis_clear(dvi__fine_axis *axis);
 int dvi__fine_axis_nodes(const dvi__fine_axis *axis);
 int dvi__fine_axis_node(const dvi__fine_axis *axis, int cell, int right);
 
-/* Find the part that holds x, and the place of x in it, from 0 to 1. Return 0 if x is outside. */
+/* Find the part that holds x, and the place of x in it, from 0 to 1. Return 0 if x is outside,
+ * which on a periodic axis only NaN and infinity are. */
 int dvi__fine_axis_locate(const dvi__fine_axis *axis, double x, int *part, double *place);
 
 /* Return the length of a part, and the point at a place in it. */

@@ -16,7 +16,7 @@ void dvi__multiscale_clear(dvi__multiscale *multiscale)
   *multiscale = (dvi__multiscale){0};
 }
 
-static dvi_status check_size(const dvi__multiscale_terms *t)
+dvi_status dvi__multiscale_check_size(const dvi__multiscale_terms *t)
 {
   const double nodes = (t->fine + 1.) * (t->fine + 1.) * LOCALS * t->cells[0] * t->cells[1];
   if (nodes < INT_MAX) return DVI_OK;
@@ -44,7 +44,7 @@ static dvi_status divide(const dvi__multiscale_terms *t, dvi__multiscale *m)
 dvi_status dvi__multiscale_create(const dvi__multiscale_terms *terms, dvi__multiscale *multiscale)
 {
   *multiscale = (dvi__multiscale){0};
-  DVI_TRY(check_size(terms));
+  DVI_TRY(dvi__multiscale_check_size(terms));
   dvi_status status = divide(terms, multiscale);
   if (status == DVI_OK) {
     const size_t cells = (size_t)terms->cells[0] * (size_t)terms->cells[1];

@@ -32,14 +32,18 @@ typedef struct dvi__multiscale {
   double defect; /* largest change of the means of a and 1/a over a cell with finer parts */
 } dvi__multiscale;
 
-/* Find the functions. DVI_BAD_OPTION if the fine cells do not resolve the coefficient, DVI_BAD_SIZE,
- * DVI_CALLBACK_FAILED, DVI_NOT_FINITE, DVI_SINGULAR, DVI_NO_MEMORY. On failure nothing is owned. */
+/* Refuse functions with more values than an int can count. DVI_BAD_SIZE. */
+dvi_status dvi__multiscale_check_size(const dvi__multiscale_terms *terms);
+
+/* Find the functions. DVI_BAD_OPTION if the fine cells do not resolve the coefficient,
+ * DVI_BAD_SIZE, DVI_CALLBACK_FAILED, DVI_NOT_FINITE, DVI_SINGULAR, DVI_NO_MEMORY. On failure
+ * nothing is owned. */
 dvi_status dvi__multiscale_create(const dvi__multiscale_terms *terms, dvi__multiscale *multiscale);
 void dvi__multiscale_clear(dvi__multiscale *multiscale);
 
 /* Give the functions that do not vanish at a place of a fine cell, ascending, and their derivatives
- * there, with `order` 0 or 1 along each axis. Return their number, at most 4. Functions are those of
- * the nodes of the coarse grid, the second axis running fastest. */
+ * there, with `order` 0 or 1 along each axis. Return their number, at most 4. Functions are those
+ * of the nodes of the coarse grid, the second axis running fastest. */
 int dvi__multiscale_row(const dvi__multiscale *multiscale, const int *order, const int *part,
                         const double *place, int *column, double *value);
 

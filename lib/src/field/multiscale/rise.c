@@ -16,6 +16,10 @@
 
 enum { MOST = DVI__RISE_POINTS_MAX };
 
+/* A larger change of an integral by twice as many parts is more than a jump of the coefficient in
+ * one of ten parts makes. The parts do not see it then. */
+static const double unresolved = .1;
+
 /* A Gauss rule and Legendre's polynomials at its nodes. */
 typedef struct rule {
   int points;
@@ -100,7 +104,7 @@ static dvi_status check_cell(dvi__rise *rise, const dvi__fine_axis *axis,
                              const dvi__coefficient *coefficient, int cell, double finer)
 {
   const double defect = dvi__coefficient_defect(rise->whole[cell], finer);
-  if (defect > DVI__UNRESOLVED)
+  if (defect > unresolved)
     return dvi__fail(DVI_BAD_OPTION,
                      "%s: fine=%d does not resolve the coefficient: the integral of 1/a from %.10g "
                      "to %.10g is %g, and %g with twice as many parts; take more parts",

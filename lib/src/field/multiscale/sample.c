@@ -5,6 +5,10 @@
 #include "core/memory.h"
 #include "core/status.h"
 
+/* A larger change of a mean by twice as many parts shows that the parts do not see the coefficient.
+ * Four parts a period of one with a contrast of 100 stay below it. */
+static const double unresolved = .25;
+
 /* Means of the coefficient and of its inverse over a coarse cell. */
 typedef struct means {
   double a, inverse;
@@ -56,7 +60,7 @@ static dvi_status compare(const sampling *s, int ci, double *defect)
     const double of_a = dvi__coefficient_defect(s->coarse[cj].a, s->finer[cj].a);
     const double of_inverse = dvi__coefficient_defect(s->coarse[cj].inverse, s->finer[cj].inverse);
     const double larger = of_a > of_inverse ? of_a : of_inverse;
-    if (larger > DVI__UNRESOLVED) return refuse(s, ci, cj);
+    if (larger > unresolved) return refuse(s, ci, cj);
     if (larger > *defect) *defect = larger;
   }
   return DVI_OK;

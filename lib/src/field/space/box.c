@@ -1,5 +1,6 @@
 /* Products of sparse axes. The matrix of a derivative is the Kronecker product of those of the
  * axes, with the first axis slowest. */
+#include <string.h>
 
 #include "core/memory.h"
 #include "core/status.h"
@@ -192,9 +193,10 @@ static void box_explain(const dvi_space *space, dvi__note *note)
     const dvi__line *line = &space->line[d];
     dvi__note_add(note, "axis %s, %g to %g%s: %s", line->name, line->from, line->to,
                   line->periodic ? ", periodic" : "", line->kind->form.name);
-    dvi__note_add(note, ", degree %d, %lld %s: %lld functions, ", line->locals - 1,
-                  (long long)line->cells, line->cells == 1 ? "cell" : "cells",
-                  (long long)line->functions);
+    if (strcmp(line->kind->form.key[0].name, "degree") == 0)
+      dvi__note_add(note, ", degree %d", line->locals - 1);
+    dvi__note_add(note, ", %lld %s: %lld functions, ", (long long)line->cells,
+                  line->cells == 1 ? "cell" : "cells", (long long)line->functions);
     line->kind->explain(line, note);
     dvi__note_add(note, "\n");
   }
