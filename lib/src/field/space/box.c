@@ -29,7 +29,8 @@ static void place_points(const dvi_space *space)
   }
 }
 
-static dvi_status box_allocate(dvi_space *space)
+/* Count functions and points. */
+static dvi_status count_products(dvi_space *space)
 {
   double functions = 1, points = 1;
   space->functions = space->points = space->row_entries = 1;
@@ -47,10 +48,17 @@ static dvi_status box_allocate(dvi_space *space)
     space->is_nodal = space->is_nodal && line->is_nodal;
     space->smoothness[d] = line->smoothness;
   }
+  return DVI_OK;
+}
+
+dvi_status dvi__box_place(dvi_space *space)
+{
+  DVI_TRY(count_products(space));
   space->x = DVI_NEW(double, space->dimension * space->points);
   space->weight = DVI_NEW(double, space->points);
   if (space->x == NULL || space->weight == NULL)
     return dvi__fail(DVI_NO_MEMORY, "space: no memory for %lld points", (long long)space->points);
+  place_points(space);
   return DVI_OK;
 }
 
@@ -99,8 +107,7 @@ static dvi_status find_boundary(dvi_space *space)
 static dvi_status box_create(const dvi_space_options *options, dvi_space *space)
 {
   (void)options;
-  DVI_TRY(box_allocate(space));
-  place_points(space);
+  DVI_TRY(dvi__box_place(space));
   return find_boundary(space);
 }
 
@@ -187,19 +194,29 @@ static dvi_status box_row(const dvi_space *space, const int *order, const double
 
 /* ---- description ---- */
 
+static void explain_line(const dvi__line *line, dvi__note *note)
+{
+  dvi__note_add(note, "axis %s, %g to %g%s: %s", line->name, line->from, line->to,
+                line->periodic ? ", periodic" : "", line->kind->form.name);
+  if (line->degree > 0) dvi__note_add(note, ", degree %d", line->degree);
+  dvi__note_add(note, ", %lld %s: %lld functions, ", (long long)line->cells,
+                line->cells == 1 ? "cell" : "cells", (long long)line->functions);
+  line->kind->explain(line, note);
+  dvi__note_add(note, "\n");
+}
+
+void dvi__explain_product(const dvi_space *space, dvi__note *note)
+{
+  if (space->dimension > 1)
+    dvi__note_add(note, "product of %d axes: %lld functions, %lld points\n", space->dimension,
+                  (long long)space->functions, (long long)space->points);
+}
+
 static void box_explain(const dvi_space *space, dvi__note *note)
 {
-  for (int d = 0; d < space->dimension; d++) {
-    const dvi__line *line = &space->line[d];
-    dvi__note_add(note, "axis %s, %g to %g%s: %s", line->name, line->from, line->to,
-                  line->periodic ? ", periodic" : "", line->kind->form.name);
-    if (strcmp(line->kind->form.key[0].name, "degree") == 0)
-      dvi__note_add(note, ", degree %d", line->locals - 1);
-    dvi__note_add(note, ", %lld %s: %lld functions, ", (long long)line->cells,
-                  line->cells == 1 ? "cell" : "cells", (long long)line->functions);
-    line->kind->explain(line, note);
-    dvi__note_add(note, "\n");
-  }
+  for (int d = 0; d < space->dimension; d++) explain_line(&space->line[d], note);
+  dvi__explain_product(space, note);
+  if (space->is_nodal) dvi__note_add(note, "the mass is diagonal\n");
 }
 
 const dvi__domain dvi__box = {

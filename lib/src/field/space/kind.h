@@ -64,6 +64,7 @@ typedef struct dvi__line {
   int value[DVI__SPACE_KEYS]; /* of the options */
   int64_t cells;
   double *node; /* [cells+1] ends of the cells */
+  int degree;   /* of polynomials, for dvi_space_explain. 0 for other functions */
   int locals, stride, smoothness;
   int64_t functions;
   int cell_points;
@@ -84,7 +85,7 @@ struct dvi__kind {
   void (*local)(const dvi__line *line, int order, int64_t cell, double s, double *value);
   int is_affine;              /* the local functions, in s, are the same in each cell */
   void (*destroy)(void *own); /* NULL if there is nothing to release */
-  /* Describe the quadrature behind "axis x: fem, degree 2, 100 cells: 201 functions, ". */
+  /* Describe the quadrature behind "axis x, 0 to 1: fem, degree 2, 9 cells: 19 functions, ". */
   void (*explain)(const dvi__line *line, dvi__note *note);
   /* The domain of boxes with so many axes or more, all of this kind. NULL for products of axes. */
   const struct dvi__domain *domain;
@@ -169,6 +170,12 @@ struct dvi_space {
   void *own; /* of the domain */
 };
 
+/* For `create` of products of axes: count functions and points, and place the points. */
+dvi_status dvi__box_place(dvi_space *space);
+
+/* Describe how many functions and points a product of several axes has. */
+void dvi__explain_product(const dvi_space *space, dvi__note *note);
+
 /* Check the counts of a space. DVI_BAD_SIZE. */
 dvi_status dvi__space_check_sizes(double functions, double points);
 
@@ -189,7 +196,7 @@ dvi_status dvi__space_sample(int dimension, const dvi__sampled *f, int64_t count
 /* The kinds of axes, ended by NULL, and the domains. */
 extern const dvi__kind *const dvi__kinds[];
 extern const dvi__kind dvi__fem, dvi__spline, dvi__legendre_element, dvi__chebyshev_element,
-    dvi__msfem;
-extern const dvi__domain dvi__box, dvi__msfem_plane;
+    dvi__fourier, dvi__msfem;
+extern const dvi__domain dvi__box, dvi__torus, dvi__simplices, dvi__msfem_plane;
 
 #endif

@@ -81,6 +81,7 @@ void dvi__lagrange_evaluate(const dvi__lagrange *basis, int order, double s, dou
 
 dvi_status dvi__line_interpolate(int degree, const long double *mark, dvi__line *line)
 {
+  line->degree = degree;
   line->locals = degree + 1;
   line->stride = degree;
   line->functions = line->cells * degree + (line->periodic ? 0 : 1);

@@ -19,6 +19,7 @@ static dvi_status spline_create(const dvi_space_options *options, const dvi_axis
   (void)options;
   const int degree = line->value[DEGREE], points = line->value[POINTS];
   DVI_TRY(dvi__line_divide(axis, line->value[CELLS], line));
+  line->degree = degree;
   line->locals = degree + 1;
   line->stride = 1;
   line->smoothness = degree;
