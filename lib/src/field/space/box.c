@@ -1,6 +1,5 @@
 /* Products of sparse axes. The matrix of a derivative is the Kronecker product of those of the
  * axes, with the first axis slowest. */
-#include <string.h>
 
 #include "core/memory.h"
 #include "core/status.h"
