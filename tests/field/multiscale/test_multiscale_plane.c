@@ -60,8 +60,9 @@ static dvi_space *space_of(const char *kind, const dvi_axis *axis, function_of_p
 static void set_places(double *x)
 {
   for (int i = 0; i < ALL; i++) {
-    x[i] = (double)(i / NODES) / FINEST;
-    x[ALL + i] = (double)(i % NODES) / FINEST;
+    const int row = i / NODES, column = i % NODES;
+    x[i] = (double)row / FINEST;
+    x[ALL + i] = (double)column / FINEST;
   }
 }
 

@@ -203,20 +203,6 @@ static dvi_status create_bench(const int *size, bench *b)
   return dvi__patch_create(size[0], size[1], DVI__PATCH_EDGES_FIXED, &b->patch);
 }
 
-static dvi_status run(job *j, int threads, int cells)
-{
-  for (int i = 0; i < threads; i++) DVI_TRY(create_bench(j->size, &j->benches[i]));
-  if (threads == 1) {
-    for (int cell = 0; cell < cells; cell++) work(j, 0, cell);
-    return DVI_OK;
-  }
-  dvi__team *team;
-  DVI_TRY(dvi__team_create(threads, &team));
-  dvi__team_share(team, cells, work, j);
-  dvi__team_destroy(&team);
-  return DVI_OK;
-}
-
 /* The sentence of another thread is lost. */
 static dvi_status report(const job *j, int cells)
 {
@@ -229,6 +215,22 @@ static dvi_status report(const job *j, int cells)
                        j->terms->coefficient.name, x, y, dvi_status_meaning(j->status[cell]));
   }
   return DVI_OK;
+}
+
+static dvi_status run(job *j, int threads, int cells)
+{
+  if (j->benches == NULL || j->status == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "msfem: no memory for %d threads", threads);
+  for (int i = 0; i < threads; i++) DVI_TRY(create_bench(j->size, &j->benches[i]));
+  if (threads == 1) {
+    for (int cell = 0; cell < cells; cell++) work(j, 0, cell);
+    return report(j, cells);
+  }
+  dvi__team *team;
+  DVI_TRY(dvi__team_create(threads, &team));
+  dvi__team_share(team, cells, work, j);
+  dvi__team_destroy(&team);
+  return report(j, cells);
 }
 
 static int patch_size(const dvi__multiscale_terms *terms, const dvi__fine_axis *axis)
@@ -248,11 +250,7 @@ dvi_status dvi__cells_solve(const dvi__multiscale_terms *terms, const dvi__fine_
            .size = {patch_size(terms, &axis[0]), patch_size(terms, &axis[1])},
            .benches = DVI_NEW(bench, threads),
            .status = DVI_NEW(dvi_status, cells)};
-  dvi_status status = DVI_OK;
-  if (!j.benches || !j.status)
-    status = dvi__fail(DVI_NO_MEMORY, "msfem: no memory for %d threads", threads);
-  if (status == DVI_OK) status = run(&j, threads, cells);
-  if (status == DVI_OK) status = report(&j, cells);
+  const dvi_status status = run(&j, threads, cells);
   for (int i = 0; j.benches != NULL && i < threads; i++) clear_bench(&j.benches[i]);
   dvi__release(j.benches);
   dvi__release(j.status);

@@ -132,6 +132,19 @@ static dvi_status solve_cell(dvi__rise *rise, const dvi__fine_axis *axis,
   return check_cell(rise, axis, coefficient, cell, (double)finer);
 }
 
+static dvi_status solve(dvi__rise *rise, const dvi__fine_axis *axis,
+                        const dvi__coefficient *coefficient)
+{
+  rule r;
+  if (!rise->start || !rise->moment || !rise->whole)
+    return dvi__fail(DVI_NO_MEMORY, "%s: no memory for %d parts of cells", coefficient->name,
+                     axis->parts);
+  DVI_TRY(make_rule(rise->points, &r));
+  for (int cell = 0; cell < axis->cells; cell++)
+    DVI_TRY(solve_cell(rise, axis, coefficient, &r, cell));
+  return DVI_OK;
+}
+
 dvi_status dvi__rise_create(const dvi__fine_axis *axis, const dvi__coefficient *coefficient,
                             int points, dvi__rise *rise)
 {
@@ -139,13 +152,7 @@ dvi_status dvi__rise_create(const dvi__fine_axis *axis, const dvi__coefficient *
                       .start = DVI_NEW(double, axis->parts),
                       .moment = DVI_NEW(double, (size_t)axis->parts *(size_t)points),
                       .whole = DVI_NEW(double, axis->cells)};
-  rule r;
-  dvi_status status = make_rule(points, &r);
-  if (status == DVI_OK && (!rise->start || !rise->moment || !rise->whole))
-    status = dvi__fail(DVI_NO_MEMORY, "%s: no memory for %d parts of cells", coefficient->name,
-                       axis->parts);
-  for (int cell = 0; cell < axis->cells && status == DVI_OK; cell++)
-    status = solve_cell(rise, axis, coefficient, &r, cell);
+  const dvi_status status = solve(rise, axis, coefficient);
   if (status != DVI_OK) dvi__rise_clear(rise);
   return status;
 }
@@ -162,8 +169,9 @@ double dvi__rise_value(const dvi__rise *rise, const dvi__fine_axis *axis, int or
                        double place)
 {
   const double *moment = rise->moment + (size_t)part * (size_t)rise->points;
-  long double P[MOST + 1], sum = order == 0 ? rise->start[part] + moment[0] * (long double)place
-                                            : (long double)moment[0];
+  long double P[MOST + 1] = {0}, sum = order == 0
+                                           ? rise->start[part] + moment[0] * (long double)place
+                                           : (long double)moment[0];
   legendre(rise->points + 1, place, P);
   for (int k = 1; k < rise->points; k++)
     sum += moment[k] * (order == 0 ? (P[k + 1] - P[k - 1]) / 2 : (2 * k + 1) * P[k]);

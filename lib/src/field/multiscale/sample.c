@@ -80,22 +80,26 @@ static dvi_status sample_column(const sampling *s, int ci, double *a, double *de
   return compare(s, ci, defect);
 }
 
+static dvi_status sample_all(const sampling *s, double *a, double *defect)
+{
+  if (!s->x || !s->a || !s->coarse || !s->finer)
+    return dvi__fail(DVI_NO_MEMORY, "%s: no memory for %d points of the coefficient",
+                     s->coefficient->name, 2 * s->axis[1].parts);
+  *defect = 0;
+  for (int ci = 0; ci < s->axis[0].cells; ci++) DVI_TRY(sample_column(s, ci, a, defect));
+  return DVI_OK;
+}
+
 dvi_status dvi__coefficient_of_cells(const dvi__fine_axis axis[2],
                                      const dvi__coefficient *coefficient, double *a, double *defect)
 {
-  sampling s = {axis,
-                coefficient,
-                DVI_NEW(double, 4 * (size_t)axis[1].parts),
-                DVI_NEW(double, 2 * (size_t)axis[1].parts),
-                DVI_NEW(means, axis[1].cells),
-                DVI_NEW(means, axis[1].cells)};
-  dvi_status status = DVI_OK;
-  if (!s.x || !s.a || !s.coarse || !s.finer)
-    status = dvi__fail(DVI_NO_MEMORY, "%s: no memory for %d points of the coefficient",
-                       coefficient->name, 2 * axis[1].parts);
-  *defect = 0;
-  for (int ci = 0; ci < axis[0].cells && status == DVI_OK; ci++)
-    status = sample_column(&s, ci, a, defect);
+  const sampling s = {axis,
+                      coefficient,
+                      DVI_NEW(double, 4 * (size_t)axis[1].parts),
+                      DVI_NEW(double, 2 * (size_t)axis[1].parts),
+                      DVI_NEW(means, axis[1].cells),
+                      DVI_NEW(means, axis[1].cells)};
+  const dvi_status status = sample_all(&s, a, defect);
   dvi__release(s.x);
   dvi__release(s.a);
   dvi__release(s.coarse);

@@ -49,8 +49,9 @@ static dvi_status make_quadrature(int points, dvi__line *line)
   if (line->place == NULL || line->weight == NULL || line->mark == NULL)
     return dvi__fail(DVI_NO_MEMORY, "space: no memory for %d points", line->cell_points);
   for (int k = 0; k < line->cell_points; k++) {
-    line->place[k] = (k / points + node[k % points]) / fine;
-    line->weight[k] = weight[k % points] / fine;
+    const int part = k / points, point = k % points;
+    line->place[k] = (part + node[point]) / fine;
+    line->weight[k] = weight[point] / fine;
   }
   line->mark[1] = 1;
   return DVI_OK;
