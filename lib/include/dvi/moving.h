@@ -173,8 +173,8 @@ dvi_status dvi_moving_evaluate(const dvi_moving *moving, double t, const double 
                                int64_t count, const double *x, double *u);
 
 /** Find a static state of least energy near q, at time 0, with nodes and values free as in motion,
- *  by damped Newton steps. kappa is lowered to its value by factors of ten, from the mean density of
- *  the energy.
+ *  by damped Newton steps. kappa is lowered to its value by factors of ten, from the mean of the
+ *  energy's density.
  *
  *  @param[in,out] q       unchanged on failure
  *  @param[out]    report  may be NULL

@@ -1,9 +1,9 @@
+#include <dvi/quadrature.h>
 #include <math.h>
 #include <string.h>
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "dvi/quadrature.h"
 #include "field/moving/moving.h"
 
 enum { CELLS_MAX = 10000000, POINTS = 3 };

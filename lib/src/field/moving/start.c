@@ -200,8 +200,11 @@ static dvi_status evaluate_at(const dvi_moving *m, const double *node, int slope
   const double *value = node + m->cells + 1;
   for (int64_t i = 0; i < count; i++) {
     const double turn = m->periodic ? floor((x[i] - node[0]) / m->length) : 0;
-    const double inside = fmin(x[i] - turn * m->length, node[m->cells]);
-    const int cell = find_cell(m->cells, node, m->periodic ? fmax(inside, node[0]) : x[i]);
+    const double shifted = x[i] - turn * m->length;
+    const double inside = m->periodic && isfinite(shifted)
+                              ? fmin(fmax(shifted, node[0]), node[m->cells])
+                              : x[i];
+    const int cell = find_cell(m->cells, node, inside);
     if (cell < 0)
       return dvi__fail(DVI_BAD_ARGUMENT, "moving: the point x = %.6g is outside of %.6g to %.6g",
                        x[i], node[0], node[m->cells]);
