@@ -19,6 +19,7 @@
 #include <dvi/maxwell.h>
 #include <dvi/mesh.h>
 #include <dvi/method.h>
+#include <dvi/moving.h>
 #include <dvi/multiscale.h>
 #include <dvi/multisymplectic.h>
 #include <dvi/noise.h>
