@@ -25,6 +25,7 @@
 #include <dvi/quadrature.h>
 #include <dvi/reference.h>
 #include <dvi/run.h>
+#include <dvi/schroedinger.h>
 #include <dvi/sensitivity.h>
 #include <dvi/shapes.h>
 #include <dvi/space.h>
