@@ -8,10 +8,11 @@
 #include "cli/command.h"
 #include "picture/raster.h"
 #include "plot/gnuplot.h"
+#include "plot/palette.h"
 #include "plot/plot.h"
 
 enum { WIDE = 640, PANELS_WIDE = 400, MARGIN_X = 150, MARGIN_Y = 90, LINES_MOST = 60000 };
-enum { PIXELS = 400, PIXELS_OF_SEVERAL = 160, COLOURS = 25 };
+enum { PIXELS = 400, PIXELS_OF_SEVERAL = 160 };
 
 /* A picture with its surface and its pixels. */
 typedef struct canvas {
@@ -120,8 +121,7 @@ static void write_map(FILE *script, const raster *r)
     (void)fwrite(&r->value[i], sizeof r->value[i], 1, script);
 }
 
-/* Set the colours: greys for a slope, from blue by white to red for values of both signs, and
- * from dark to light for those of one sign. */
+/* Set the colours, greys for a slope. */
 static void write_colours(FILE *script, const canvas *c, const vtu_field *field)
 {
   double least = HUGE_VAL, most = -HUGE_VAL;
@@ -131,25 +131,8 @@ static void write_colours(FILE *script, const canvas *c, const vtu_field *field)
     least = fmin(least, field->value[i]);
     most = fmax(most, field->value[i]);
   }
-  if (field == NULL || !(most > least)) {
-    (void)fputs("set palette defined (0 '#a8b4c0', 1 '#f4f6f8')\nset cbrange [*:*]\n", script);
-    if (field == NULL) (void)fputs("set cbrange [0:1]\n", script);
-  } else if (least < 0 && most > 0) {
-    const double size = fmax(-least, most);
-    (void)fputs("set palette defined (-1 '#2166ac', -0.5 '#92c5de', 0 '#f7f7f7', 0.5 '#f4a582', "
-                "1 '#b2182b')\n",
-                script);
-    (void)fprintf(script, "set cbrange [%.9g:%.9g]\n", -size, size);
-  } else {
-    (void)fputs("set palette defined (0 '#440154', 1 '#3b528b', 2 '#21918c', 3 '#5ec962', "
-                "4 '#fde725')\n",
-                script);
-    (void)fprintf(script, "set cbrange [%.9g:%.9g]\nset format cb '%%g'\n", least, most);
-  }
-  if (field == NULL)
-    (void)fputs("unset colorbox\n", script);
-  else
-    (void)fprintf(script, "set colorbox\nset palette maxcolors %d\n", COLOURS);
+  palette_set(script, least, most);
+  if (field == NULL) (void)fputs("set cbrange [0:1]\nunset colorbox\n", script);
 }
 
 static void write_axes(FILE *script, const canvas *c)

@@ -8,7 +8,8 @@ BEGIN {
   # for all of its sub-rooms.
   sees["core"] = ""
   sees["num/simd"] = "core"
-  sees["num"] = "core num/simd"
+  sees["num/fft"] = "core num/simd"
+  sees["num"] = "core num/simd num/fft"
   sees["group"] = "core num"
   sees["space"] = "core num"
   sees["solve"] = "core num"
@@ -56,11 +57,12 @@ BEGIN {
   sees["field/method"] = sees["field/avi"] " field/avi field/tents"
   sees["field/spectra"] = "core"
   sees["field/multiscale"] = "core num field/algebra"
-  sees["field/space"] = "core num field/algebra field/mesh field/multiscale"
+  sees["field/space"] = "core num num/fft space field/algebra field/mesh field/multiscale"
   sees["field/density"] = "core num field/algebra field/space"
   sees["field/schroedinger"] = "core num march field/algebra field/space field/density"
   sees["field/multisymplectic"] = "core num march field/algebra"
   sees["field/moving"] = "core num"
+  sees["field/rotations"] = "core field/algebra"
   # The library of scenes includes libdvi's public headers, too.
   sees["text"] = ""
   sees["expr"] = "text"

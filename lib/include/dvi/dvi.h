@@ -24,6 +24,7 @@
 #include <dvi/path.h>
 #include <dvi/quadrature.h>
 #include <dvi/reference.h>
+#include <dvi/rotations.h>
 #include <dvi/run.h>
 #include <dvi/schroedinger.h>
 #include <dvi/sensitivity.h>

@@ -1,10 +1,10 @@
 /** Function spaces for fields on intervals, boxes, tori and meshes, with a quadrature each.
  *
- *  A field is u(x) = sum_i U_i phi_i(x). A box is the product of axes, with a space of one dimension
- *  on each. Integrals over the domain are sums over quadrature points. The kinds are
+ *  A field is u(x) = sum_i U_i phi_i(x). A box is the product of axes, with a space of one
+ *  dimension on each. Integrals over the domain are sums over quadrature points. The kinds are
  *
- *    fem:degree=k,cells=N              continuous, polynomials of degree k (1 to 8) on N cells, with
- *                                      k+1 Gauss points a cell
+ *    fem:degree=k,cells=N              continuous, polynomials of degree k (1 to 8) on N cells,
+ *                                      with k+1 Gauss points each
  *    fem:degree=k,cells=N,lumped=yes   the same functions by their values at Gauss-Lobatto nodes,
  *                                      which are the quadrature points: the mass is diagonal
  *    spline:degree=p,cells=N           B-splines with p-1 continuous derivatives (p from 1 to 8)
@@ -17,8 +17,8 @@
  *                                      parts of it (docs/fields/multiscale.md)
  *
  *  Every kind has the option points=R: quadrature points a cell (fourier: of the whole axis), for
- *  those whose nodes are not their points. On a mesh of triangles or tetrahedra the kind is fem with
- *  degree=1 or 2, without cells.
+ *  those whose nodes are not their points. On a mesh of triangles or tetrahedra the kind is fem
+ *  with degree=1 or 2, without cells.
  *
  *  Functions are numbered with the first axis running slowest, and the points, too. Periodic ends
  *  are one. Sources: Leok 2004, secs. 5.1, 5.7 and 5.8; Karniadakis and Sherwin 2005, chs. 2-4. */
@@ -96,8 +96,8 @@ int dvi_space_smoothness(const dvi_space *space, int d);
 int64_t dvi_space_points(const dvi_space *space, const double **x, const double **weight);
 
 /** Return the functions that do not vanish on a part of the boundary, ascending, and their number.
- *  Parts of a box are "left" and "right" (x), "bottom" and "top" (y), "back" and "front" (z), as far
- *  as these axes are not periodic, and "boundary", all of them. Those of a mesh are its parts.
+ *  Parts of a box are "left" and "right" (x), "bottom" and "top" (y), "back" and "front" (z), as
+ *  far as these axes are not periodic, and "boundary", all of them. Those of a mesh are its parts.
  *
  *  @return owned by the space. NULL if there is no such part, or for fourier, which has none */
 const int *dvi_space_boundary(const dvi_space *space, const char *part, int64_t *count);
@@ -134,8 +134,8 @@ dvi_status dvi_space_interpolate(const dvi_space *space,
                                  int (*f)(int64_t count, const double *x, double *f, void *user),
                                  void *user, double *U);
 
-/** Write what was built, one fact a line: "fem, degree 2, 100 cells: 201 functions, 3 Gauss points a
- *  cell, exact for polynomials of degree 5". Cut off at size. */
+/** Write what was built, one fact a line: "fem, degree 2, 100 cells: 201 functions, 3 Gauss points
+ *  a cell, exact for polynomials of degree 5". Cut off at size. */
 void dvi_space_explain(const dvi_space *space, char *text, size_t size);
 
 #ifdef __cplusplus

@@ -41,7 +41,7 @@ static long double circle_number(void)
 /* Compute Newton's step, the function whose zeros are the free nodes over its derivative in y. */
 static long double newton_step(ends e, int n, long double y)
 {
-  long double value[DVI_QUADRATURE_MAX + 1], difference[DVI_QUADRATURE_MAX + 1];
+  long double value[DVI__QUADRATURE_MOST + 1], difference[DVI__QUADRATURE_MOST + 1];
   dvi__legendre(n, y, value, difference);
   const long double P = value[n], D = difference[n], S = 2 * P - D;
   if (e.here && e.there)
@@ -70,7 +70,7 @@ static long double free_node(ends e, int n, int k)
 
 static long double gaussian_weight(ends e, int n, long double y)
 {
-  long double value[DVI_QUADRATURE_MAX + 1], difference[DVI_QUADRATURE_MAX + 1];
+  long double value[DVI__QUADRATURE_MOST + 1], difference[DVI__QUADRATURE_MOST + 1];
   dvi__legendre(n, y, value, difference);
   const long double P = value[n - 1], nD = REAL(n) * difference[n];
   if (e.here && e.there) return 1 / (REAL(n) * REAL(n - 1) * P * P);
@@ -146,22 +146,24 @@ static int rule_is_known(dvi_rule rule)
   return (int)rule >= 0 && (size_t)rule < sizeof rules / sizeof *rules;
 }
 
-static dvi_status check_rule(dvi_rule rule, int n, int outputs)
+/* `most` is the limit of rules of any size. */
+static dvi_status check_rule(dvi_rule rule, int n, int most, int outputs)
 {
   if (!rule_is_known(rule))
     return dvi__fail(DVI_BAD_ARGUMENT, "quadrature: there is no rule with number %d", (int)rule);
   if (!outputs)
     return dvi__fail(DVI_BAD_ARGUMENT,
                      "quadrature: the array for the nodes or for the weights is NULL");
-  if (n < rules[rule].fewest || n > rules[rule].most)
+  if (rules[rule].most < DVI_QUADRATURE_MAX) most = rules[rule].most;
+  if (n < rules[rule].fewest || n > most)
     return dvi__fail(DVI_BAD_SIZE, "quadrature: %d points asked of %s, %d to %d possible", n,
-                     rules[rule].name, rules[rule].fewest, rules[rule].most);
+                     rules[rule].name, rules[rule].fewest, most);
   return DVI_OK;
 }
 
 dvi_status dvi__quadrature_long(dvi_rule rule, int n, long double *node, long double *weight)
 {
-  DVI_TRY(check_rule(rule, n, node && weight));
+  DVI_TRY(check_rule(rule, n, DVI__QUADRATURE_MOST, node && weight));
   switch (rule) {
   case DVI_GAUSS:
   case DVI_MIDPOINT: gaussian_rule((ends){.here = 0, .there = 0}, n, node, weight); break;
@@ -178,7 +180,7 @@ dvi_status dvi__quadrature_long(dvi_rule rule, int n, long double *node, long do
 dvi_status dvi_quadrature(dvi_rule rule, int n, double *node, double *weight)
 {
   long double node_long[DVI_QUADRATURE_MAX] = {0}, weight_long[DVI_QUADRATURE_MAX] = {0};
-  DVI_TRY(check_rule(rule, n, node && weight));
+  DVI_TRY(check_rule(rule, n, DVI_QUADRATURE_MAX, node && weight));
   DVI_TRY(dvi__quadrature_long(rule, n, node_long, weight_long));
   for (int i = 0; i < n; i++) {
     node[i] = (double)node_long[i];

@@ -9,9 +9,9 @@
 /* Tell if the operators of the space are transforms. Otherwise they are sparse matrices. */
 int dvi__space_is_fourier(const dvi_space *space);
 
-/* Tell if each point belongs to one function, which is 1 there while the others are 0. Values at the
- * points are coefficients then, and the mass is diagonal. An end of two cells is two points, because
- * derivatives from both sides differ there. */
+/* Tell if each point belongs to one function, which is 1 there while the others are 0. Values at
+ * the points are coefficients then, and the mass is diagonal. An end of two cells is two points,
+ * because derivatives from both sides differ there. */
 int dvi__space_is_nodal(const dvi_space *space);
 
 /* A derivative of the field at the points, as an operator on coefficients. */
