@@ -7,6 +7,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "field/schroedinger/schroedinger.h"
+#include "field/space/kind.h"
 #include "num/finite.h"
 
 /* ---- checks ---- */
@@ -226,17 +227,11 @@ static dvi_status make_matrices(dvi_schroedinger *s)
   DVI_TRY(select_free(s, &s->values.matrix, &s->B));
   DVI_TRY(sum_kinetic(s));
   const int64_t entries = s->T.start[s->free];
-  double *ones = DVI_NEW(double, s->points);
   s->M = DVI_NEW(double, entries);
-  if (ones == NULL || s->M == NULL || entries > INT_MAX) {
-    dvi__release(ones);
+  if (s->M == NULL || entries > INT_MAX)
     return dvi__fail(entries > INT_MAX ? DVI_BAD_SIZE : DVI_NO_MEMORY,
                      "schroedinger: matrices with %lld entries are too large", (long long)entries);
-  }
-  for (int64_t k = 0; k < s->points; k++) ones[k] = 1;
-  dvi__schroedinger_assemble(s, ones, s->M);
-  for (int64_t e = 0; e < entries; e++) s->M[e] -= s->T.value[e];
-  dvi__release(ones);
+  dvi__schroedinger_add_square(s, NULL, s->M);
   return check_mass(s);
 }
 
@@ -333,15 +328,18 @@ void dvi_schroedinger_explain(const dvi_schroedinger *equation, char *text, size
   text[0] = '\0';
   if (equation == NULL) return;
   const dvi_schroedinger *s = equation;
-  const int length = snprintf(
-      text, size,
-      "hbar = %g, mass = %g\n%lld free of %lld functions, %lld points\npotential %s\n%s\n%s%s",
-      s->hbar, s->mass, (long long)s->free, (long long)s->functions, (long long)s->points,
-      s->potential == NULL ? "none" : s->depends_on_time ? "of x and t" : "of x",
-      s->beta != NULL ? "interaction beta |psi|^2" : "no interaction",
-      s->is_fourier ? "diagonal kinetic energy, no matrices" : "sparse matrices",
-      s->radial == 2 ? ", measure 2 pi x dx" : s->radial == 3 ? ", measure 4 pi x^2 dx" : "");
-  if (!s->is_fourier && length >= 0 && (size_t)length < size)
-    (void)snprintf(text + length, size - (size_t)length, " with %lld entries",
-                   (long long)s->T.start[s->free]);
+  dvi__note note = {text, size, 0};
+  dvi__note_add(&note, "hbar = %g, mass = %g\n%lld free of %lld functions, %lld points\n", s->hbar,
+                s->mass, (long long)s->free, (long long)s->functions, (long long)s->points);
+  dvi__note_add(&note, "%s, %s\n",
+                s->potential == NULL ? "no potential"
+                : s->depends_on_time ? "a potential of x and t"
+                                     : "a potential of x",
+                s->beta != NULL ? "an interaction beta |psi|^2" : "no interaction");
+  if (s->radial > 0)
+    dvi__note_add(&note, "a radius with the measure %s\n", s->radial == 2 ? "2 pi x" : "4 pi x^2");
+  if (s->is_fourier)
+    dvi__note_add(&note, "diagonal kinetic energy, and no matrices\n");
+  else
+    dvi__note_add(&note, "sparse matrices with %lld entries\n", (long long)s->T.start[s->free]);
 }

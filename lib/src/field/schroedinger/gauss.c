@@ -92,7 +92,7 @@ static void put_one(dvi__gauss *g, int j, const double *X, const double *inverse
 static dvi_status diagonalise(dvi__gauss *g)
 {
   const int s = g->stages;
-  double T[MOST * MOST], X[MOST * MOST], inverse[MOST * MOST], re[MOST], im[MOST];
+  double T[MOST * MOST] = {0}, X[MOST * MOST], inverse[MOST * MOST], re[MOST], im[MOST];
   for (int i = 0; i < s; i++)
     for (int j = 0; j < s; j++) T[j * s + i] = g->A[i][j];
   DVI_TRY(dvi__eigen(s, T, re, im, X, inverse));

@@ -1,11 +1,11 @@
 /* Products with the parts of H. */
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "core/memory.h"
 #include "core/status.h"
 #include "field/schroedinger/schroedinger.h"
+#include "field/space/kind.h"
 #include "num/finite.h"
 
 dvi_status dvi__schroedinger_make_room(const dvi_schroedinger *s, dvi__schroedinger_room *room)
@@ -30,10 +30,9 @@ void dvi__schroedinger_clear_room(dvi__schroedinger_room *room)
 static dvi_status refuse_value(const dvi_schroedinger *s, double t, ptrdiff_t k, double V)
 {
   char place[96] = "";
-  int length = 0;
+  dvi__note note = {place, sizeof place, 0};
   for (int d = 0; d < s->dimension; d++)
-    length += snprintf(place + length, sizeof place - (size_t)length, "%s%g", d > 0 ? ", " : "",
-                       s->x[d * s->points + k]);
+    dvi__note_add(&note, "%s%g", d > 0 ? ", " : "", s->x[d * s->points + k]);
   return dvi__fail(DVI_NOT_FINITE,
                    "schroedinger: the potential is %g at (%s) and t = %g; a finite number is needed "
                    "at each quadrature point, with walls as fixed ends of the domain",
@@ -54,15 +53,34 @@ dvi_status dvi__schroedinger_potential(const dvi_schroedinger *s, double t, doub
   return bad < 0 ? DVI_OK : refuse_value(s, t, bad, V[bad]);
 }
 
-void dvi__schroedinger_assemble(const dvi_schroedinger *s, const double *V, double *values)
+/* Add a row of w V B^T B of one point to row i of values. Columns that follow each other do so in
+ * the pattern, too, so that few are searched for. */
+static void add_row(const dvi_schroedinger *s, int64_t k, int i, double factor, double *values)
+{
+  const dvi__csr *B = &s->B, *T = &s->T;
+  int64_t at = -1;
+  for (int64_t b = B->start[k]; b < B->start[k + 1]; b++) {
+    at++;
+    if (at == 0 || at >= T->start[i + 1] || T->column[at] != B->column[b])
+      at = dvi__csr_find(T, i, B->column[b]);
+    values[at] += factor * B->value[b];
+  }
+}
+
+void dvi__schroedinger_add_square(const dvi_schroedinger *s, const double *V, double *values)
 {
   const dvi__csr *B = &s->B;
-  memcpy(values, s->T.value, (size_t)s->T.start[s->free] * sizeof *values);
-  for (int64_t k = 0; k < s->points && V != NULL; k++)
+  for (int64_t k = 0; k < s->points; k++) {
+    const double w = s->weight[k] * (V != NULL ? V[k] : 1);
     for (int64_t a = B->start[k]; a < B->start[k + 1]; a++)
-      for (int64_t b = B->start[k]; b < B->start[k + 1]; b++)
-        values[dvi__csr_find(&s->T, B->column[a], B->column[b])] +=
-            s->weight[k] * V[k] * B->value[a] * B->value[b];
+      add_row(s, k, B->column[a], w * B->value[a], values);
+  }
+}
+
+void dvi__schroedinger_assemble(const dvi_schroedinger *s, const double *V, double *values)
+{
+  memcpy(values, s->T.value, (size_t)s->T.start[s->free] * sizeof *values);
+  if (V != NULL) dvi__schroedinger_add_square(s, V, values);
 }
 
 /* ---- products ---- */

@@ -10,8 +10,8 @@
 
 /* ---- the step ---- */
 
-dvi_status dvi__stepper_create(const dvi_schroedinger *s, const dvi__schroedinger_method *method,
-                               double h, dvi__stepper *stepper)
+dvi_status dvi__wave_stepper_create(const dvi_schroedinger *s, const dvi__schroedinger_method *method,
+                               double h, dvi__wave_stepper *stepper)
 {
   if (method->is_split) {
     if (stepper->split == NULL) DVI_TRY(dvi__split_create(s, method->order, &stepper->split));
@@ -21,7 +21,7 @@ dvi_status dvi__stepper_create(const dvi_schroedinger *s, const dvi__schroedinge
   return dvi__gauss_prepare(stepper->gauss, h);
 }
 
-void dvi__stepper_destroy(dvi__stepper *stepper)
+void dvi__wave_stepper_destroy(dvi__wave_stepper *stepper)
 {
   dvi__gauss_destroy(&stepper->gauss);
   dvi__split_destroy(&stepper->split);
@@ -32,7 +32,7 @@ void dvi__stepper_destroy(dvi__stepper *stepper)
 static void destroy(void *self)
 {
   dvi__wave_march *m = self;
-  dvi__stepper_destroy(&m->stepper);
+  dvi__wave_stepper_destroy(&m->stepper);
   dvi__wave_clear_view(m);
   dvi__release(m->z);
   dvi__release(m->compensation);
@@ -62,7 +62,7 @@ static dvi_status make(dvi__wave_march *m, const dvi_schroedinger_march_options 
   const char *method = options->method != NULL ? options->method : "midpoint";
   DVI_TRY(dvi__schroedinger_read_method(method, &m->method));
   m->dt = dvi__fit_step(options->step, options->span);
-  DVI_TRY(dvi__stepper_create(m->s, &m->method, m->dt, &m->stepper));
+  DVI_TRY(dvi__wave_stepper_create(m->s, &m->method, m->dt, &m->stepper));
   m->z = DVI_NEW(double, 2 * m->s->free);
   m->compensation = DVI_NEW(double, 2 * m->s->free);
   if (m->z == NULL || m->compensation == NULL)

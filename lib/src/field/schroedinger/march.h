@@ -5,19 +5,19 @@
 #include "march/kind.h"
 
 /* The step by one of the methods. The other pointer is NULL. */
-typedef struct dvi__stepper {
+typedef struct dvi__wave_stepper {
   dvi__gauss *gauss;
   dvi__split *split;
-} dvi__stepper;
+} dvi__wave_stepper;
 
-dvi_status dvi__stepper_create(const dvi_schroedinger *s, const dvi__schroedinger_method *method,
-                               double h, dvi__stepper *stepper);
-void dvi__stepper_destroy(dvi__stepper *stepper);
+dvi_status dvi__wave_stepper_create(const dvi_schroedinger *s, const dvi__schroedinger_method *method,
+                               double h, dvi__wave_stepper *stepper);
+void dvi__wave_stepper_destroy(dvi__wave_stepper *stepper);
 
 /* What is shown at the march's time, beside its state. */
 typedef struct dvi__view {
   int is_now, is_measured;
-  dvi__stepper stepper; /* of shorter steps, made when it is first needed */
+  dvi__wave_stepper stepper; /* of shorter steps, made when it is first needed */
   double *z;            /* [2*free] */
   double *compensation; /* [2*free] */
   double *psi;          /* [2*functions] */
@@ -31,7 +31,7 @@ enum { DVI__OBSERVABLE_NAME = 32 };
 typedef struct dvi__wave_march {
   const dvi_schroedinger *s;
   dvi__schroedinger_method method;
-  dvi__stepper stepper;
+  dvi__wave_stepper stepper;
   double dt, t0, t;
   int64_t step;
   double *z, *compensation; /* [2*free] after whole steps */

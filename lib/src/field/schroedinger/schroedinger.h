@@ -41,6 +41,9 @@ void dvi__schroedinger_clear_room(dvi__schroedinger_room *room);
 /* Give V [points] at a time, checked. DVI_CALLBACK_FAILED, DVI_NOT_FINITE. */
 dvi_status dvi__schroedinger_potential(const dvi_schroedinger *s, double t, double *V);
 
+/* Add sum w V B^T B to the values of a matrix in the pattern of T. V is NULL for 1. */
+void dvi__schroedinger_add_square(const dvi_schroedinger *s, const double *V, double *values);
+
 /* Give the sparse matrix T + sum w V B^T B in the pattern of T. V may be NULL for 0. */
 void dvi__schroedinger_assemble(const dvi_schroedinger *s, const double *V, double *values);
 

@@ -2,6 +2,7 @@
 #ifndef DVI_FIELD_SCHROEDINGER_SHIFTED_H
 #define DVI_FIELD_SCHROEDINGER_SHIFTED_H
 #include <complex.h>
+#undef I /* a name of arguments elsewhere */
 
 #include "field/schroedinger/schroedinger.h"
 

@@ -81,7 +81,7 @@ void dvi__wave_clear_view(dvi__wave_march *m)
   dvi__release(m->name);
   dvi__release(m->probe);
   if (m->view == NULL) return;
-  dvi__stepper_destroy(&m->view->stepper);
+  dvi__wave_stepper_destroy(&m->view->stepper);
   dvi__release(m->view->z);
   dvi__release(m->view->psi);
   dvi__release(m->view->V);
@@ -97,7 +97,7 @@ static dvi_status step_beside(const dvi__wave_march *m)
   dvi__view *v = m->view;
   const double t = m->t0 + (double)m->step * m->dt, h = m->t - t;
   if (!(h > dvi__wave_spare(m, m->t) * m->dt)) return DVI_OK;
-  DVI_TRY(dvi__stepper_create(m->s, &m->method, h, &v->stepper));
+  DVI_TRY(dvi__wave_stepper_create(m->s, &m->method, h, &v->stepper));
   return m->method.is_split ? dvi__split_step(v->stepper.split, t, v->z, v->compensation)
                             : dvi__gauss_step(v->stepper.gauss, t, v->z, v->compensation);
 }
