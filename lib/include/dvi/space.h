@@ -8,7 +8,8 @@
  *    fem:degree=k,cells=N,lumped=yes   the same functions by their values at Gauss-Lobatto nodes,
  *                                      which are the quadrature points: the mass is diagonal
  *    spline:degree=p,cells=N           B-splines with p-1 continuous derivatives (p from 1 to 8)
- *    fourier:modes=K                   1, cos k x, sin k x to k = K, orthonormal. Periodic alone
+ *    fourier:modes=K                   1, cos x, sin x, .., cos K x, sin K x with x from 0 to 2 pi
+ *                                      along the axis, orthonormal. Periodic alone
  *    legendre:degree=N                 one polynomial by its values at Gauss-Lobatto nodes, which
  *                                      are the quadrature points (N up to 256)
  *    chebyshev:degree=N                one polynomial by its values at Chebyshev's nodes, with N+1

@@ -28,7 +28,8 @@ static void place_points(const dvi_space *space)
   }
 }
 
-static dvi_status box_allocate(dvi_space *space)
+/* Count functions and points. */
+static dvi_status count_products(dvi_space *space)
 {
   double functions = 1, points = 1;
   space->functions = space->points = space->row_entries = 1;
@@ -46,10 +47,17 @@ static dvi_status box_allocate(dvi_space *space)
     space->is_nodal = space->is_nodal && line->is_nodal;
     space->smoothness[d] = line->smoothness;
   }
+  return DVI_OK;
+}
+
+dvi_status dvi__box_place(dvi_space *space)
+{
+  DVI_TRY(count_products(space));
   space->x = DVI_NEW(double, space->dimension * space->points);
   space->weight = DVI_NEW(double, space->points);
   if (space->x == NULL || space->weight == NULL)
     return dvi__fail(DVI_NO_MEMORY, "space: no memory for %lld points", (long long)space->points);
+  place_points(space);
   return DVI_OK;
 }
 
@@ -98,8 +106,7 @@ static dvi_status find_boundary(dvi_space *space)
 static dvi_status box_create(const dvi_space_options *options, dvi_space *space)
 {
   (void)options;
-  DVI_TRY(box_allocate(space));
-  place_points(space);
+  DVI_TRY(dvi__box_place(space));
   return find_boundary(space);
 }
 

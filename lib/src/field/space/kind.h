@@ -166,6 +166,9 @@ struct dvi_space {
   void *own; /* of the domain */
 };
 
+/* For `create` of products of axes: count functions and points, and place the points. */
+dvi_status dvi__box_place(dvi_space *space);
+
 /* Check the counts of a space. DVI_BAD_SIZE. */
 dvi_status dvi__space_check_sizes(double functions, double points);
 
@@ -185,7 +188,8 @@ dvi_status dvi__space_sample(int dimension, const dvi__sampled *f, int64_t count
 
 /* The kinds of axes, ended by NULL, and the domains. */
 extern const dvi__kind *const dvi__kinds[];
-extern const dvi__kind dvi__fem, dvi__spline, dvi__legendre_element, dvi__chebyshev_element;
-extern const dvi__domain dvi__box;
+extern const dvi__kind dvi__fem, dvi__spline, dvi__legendre_element, dvi__chebyshev_element,
+    dvi__fourier;
+extern const dvi__domain dvi__box, dvi__torus, dvi__simplices;
 
 #endif

@@ -73,7 +73,13 @@ static dvi_status make_lines(const dvi_space_options *options, dvi_space *space)
 
 static dvi_status make_space(const dvi_space_options *options, dvi_space *space)
 {
-  DVI_TRY(make_lines(options, space));
+  if (options->mesh != NULL) {
+    space->mesh = dvi_mesh_share(options->mesh);
+    space->dimension = dvi_mesh_dimension(options->mesh);
+    space->domain = &dvi__simplices;
+  } else {
+    DVI_TRY(make_lines(options, space));
+  }
   return space->domain->create(options, space);
 }
 

@@ -1,0 +1,329 @@
+/* Trigonometric polynomials on periodic axes, orthonormal in L2,
+ *
+ *     1/sqrt(L),  sqrt(2/L) cos(2 pi k (x - a)/L),  sqrt(2/L) sin(2 pi k (x - a)/L),  k = 1 .. K,
+ *
+ * in the order 0, c1, s1, c2, s2 and so on, with M equal weights at equally spaced points. Sums of
+ * products of p functions are exact for M > p K, so that the mass is the identity from M = 2K+1 on.
+ * The default M, from 4K+2 on, is right for potentials of the fourth degree. Derivatives turn the
+ * pairs (c, s) and multiply them by powers of the wave number. Boxes are transformed axis by axis.
+ * Source: Leok 2004, sec. 5.8. */
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "field/space/kind.h"
+#include "num/fft/fft.h"
+
+enum { MODES, POINTS, MODES_MOST = 1 << 24 };
+
+static const double pi = 3.14159265358979323846;
+
+/* ---- one axis ---- */
+
+static dvi_status place_equally(dvi__line *line, int points)
+{
+  line->cell_points = points;
+  line->place = DVI_NEW(double, points);
+  line->weight = DVI_NEW(double, points);
+  if (line->place == NULL || line->weight == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "space: no memory for %d points", points);
+  for (int j = 0; j < points; j++) {
+    line->place[j] = (double)j / points;
+    line->weight[j] = 1.0 / points;
+  }
+  return DVI_OK;
+}
+
+static dvi_status check_fourier(const dvi_axis *axis, const dvi__line *line)
+{
+  const int modes = line->value[MODES], points = line->value[POINTS];
+  if (modes == 0)
+    return dvi__fail(DVI_BAD_OPTION, "space: fourier has no modes; give modes=1 to %d", MODES_MOST);
+  if (!line->periodic)
+    return dvi__fail(DVI_BAD_ARGUMENT, "space: fourier on axis %s, which is not periodic",
+                     line->name);
+  if (axis->nodes != 0)
+    return dvi__fail(DVI_BAD_ARGUMENT, "space: axis %s has nodes, but fourier has no cells",
+                     line->name);
+  if (points != 0 && points < 2 * modes + 1)
+    return dvi__fail(DVI_BAD_OPTION, "space: fourier: points=%d with modes=%d; %d or more possible",
+                     points, modes, 2 * modes + 1);
+  return DVI_OK;
+}
+
+static void destroy_plan(void *own)
+{
+  dvi__fft *plan = own;
+  dvi__fft_destroy(&plan);
+}
+
+static dvi_status fourier_create(const dvi_space_options *options, const dvi_axis *axis,
+                                 dvi__line *line)
+{
+  (void)options;
+  const int modes = line->value[MODES];
+  dvi__fft *plan = NULL;
+  DVI_TRY(check_fourier(axis, line));
+  DVI_TRY(dvi__line_divide(axis, 1, line));
+  line->locals = 2 * modes + 1;
+  line->functions = line->locals;
+  line->smoothness = DVI__ORDER_MOST;
+  DVI_TRY(place_equally(line, line->value[POINTS] != 0 ? line->value[POINTS]
+                                                       : dvi__fft_length(4 * modes + 2)));
+  DVI_TRY(dvi__fft_create(line->cell_points, &plan));
+  line->own = plan;
+  return DVI_OK;
+}
+
+static void fourier_explain(const dvi__line *line, dvi__note *note)
+{
+  dvi__note_add(note, "%d points, exact for products of %d functions", line->cell_points,
+                (line->cell_points - 1) / line->value[MODES]);
+}
+
+/* The derivative of function i of an axis. */
+static dvi__fourier_image differentiate(const dvi__line *line, int order, int64_t i)
+{
+  static const double sign_of_cosine[4] = {1, -1, -1, 1}, sign_of_sine[4] = {1, 1, -1, -1};
+  if (i == 0) return (dvi__fourier_image){0, order == 0 ? 1 : 0};
+  const int is_sine = i % 2 == 0;
+  const int64_t partner = is_sine ? i - 1 : i + 1;
+  const double wave = 2 * pi * (double)((i + 1) / 2) / (line->to - line->from);
+  double factor = (is_sine ? sign_of_sine : sign_of_cosine)[order % 4];
+  for (int r = 0; r < order; r++) factor *= wave;
+  return (dvi__fourier_image){order % 2 == 0 ? i : partner, factor};
+}
+
+dvi__fourier_image dvi__fourier_derivative(const dvi_space *space, const int *order, int64_t i)
+{
+  dvi__fourier_image image = {0, 1};
+  int64_t stride = 1;
+  for (int d = space->dimension - 1; d >= 0; d--) {
+    const int64_t own = space->line[d].functions;
+    const dvi__fourier_image part = differentiate(&space->line[d], order[d], i % own);
+    image.other += stride * part.other;
+    image.factor *= part.factor;
+    stride *= own;
+    i /= own;
+  }
+  return image;
+}
+
+static double norm_of(const dvi__line *line, int64_t i)
+{
+  return sqrt((i == 0 ? 1 : 2) / (line->to - line->from));
+}
+
+/* Set values [points] to a derivative of the coefficients, which are `stride` apart. */
+static void synthesise(const dvi__line *line, int order, const double *U, int64_t stride,
+                       double *values, double *work)
+{
+  memset(values, 0, (size_t)line->cell_points * sizeof *values);
+  for (int64_t i = 0; i < line->functions; i++) {
+    const dvi__fourier_image image = differentiate(line, order, i);
+    values[image.other] += image.factor * norm_of(line, i) * U[i * stride];
+  }
+  dvi__fft_synthesise(line->own, values, work);
+}
+
+/* The transposed sum. `values` [points] is overwritten. */
+static void add_analysis(const dvi__line *line, int order, double *values, double *U,
+                         int64_t stride, double *work)
+{
+  dvi__fft_analyse(line->own, values, work);
+  for (int64_t i = 0; i < line->functions; i++) {
+    const dvi__fourier_image image = differentiate(line, order, i);
+    U[i * stride] += image.factor * norm_of(line, i) * values[image.other];
+  }
+}
+
+/* ---- products of axes ---- */
+
+/* Numbers in an array that has coefficients along the first `axes` axes, and values along others.
+ * */
+static int64_t mixed_size(const dvi_space *space, int axes)
+{
+  int64_t size = 1;
+  for (int d = 0; d < space->dimension; d++)
+    size *= d < axes ? space->line[d].functions : dvi__line_points(&space->line[d]);
+  return size;
+}
+
+/* Work is an array for the values on one line, the work of its transform, and two arrays for what
+ * stands between two axes. */
+enum { LINE, TRANSFORM, BETWEEN, WORKPLACES = BETWEEN + DVI_AXES_MAX - 1 };
+
+/* Give the ends of these arrays, which begin on cache lines. */
+static void measure_work(const dvi_space *space, int64_t end[WORKPLACES])
+{
+  enum { CACHE_LINE = 8 };
+  int64_t size[WORKPLACES] = {0}, sum = 0;
+  for (int d = 0; d < space->dimension; d++) {
+    const int64_t points = space->line[d].cell_points, own = dvi__fft_work(space->line[d].own);
+    if (points > size[LINE]) size[LINE] = points;
+    if (own > size[TRANSFORM]) size[TRANSFORM] = own;
+    if (d > 0) size[BETWEEN + d - 1] = mixed_size(space, d);
+  }
+  for (int i = 0; i < WORKPLACES; i++)
+    end[i] = sum += (size[i] + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE;
+}
+
+typedef struct workplace {
+  double *line, *transform, *between[DVI_AXES_MAX - 1];
+} workplace;
+
+static workplace lay_out_work(const dvi_space *space, double *work)
+{
+  int64_t end[WORKPLACES];
+  measure_work(space, end);
+  return (workplace){.line = work,
+                     .transform = work + end[LINE],
+                     .between = {work + end[TRANSFORM], work + end[BETWEEN]}};
+}
+
+/* The lines along axis d: `before` times `after` of them. */
+static void count_lines(const dvi_space *space, int d, int64_t *before, int64_t *after)
+{
+  *before = *after = 1;
+  for (int e = 0; e < d; e++) *before *= space->line[e].functions;
+  for (int e = d + 1; e < space->dimension; e++) *after *= space->line[e].cell_points;
+}
+
+static void torus_apply(const dvi__space_operator *B, const double *U, double *values, double *work)
+{
+  const dvi_space *space = B->space;
+  int64_t before, after;
+  const workplace w = lay_out_work(space, work);
+  const double *from = U;
+  for (int d = space->dimension - 1; d >= 0; d--) {
+    const dvi__line *line = &space->line[d];
+    double *to = d > 0 ? w.between[d - 1] : values;
+    count_lines(space, d, &before, &after);
+    for (int64_t b = 0; b < before; b++)
+      for (int64_t a = 0; a < after; a++) {
+        double *at = to + b * line->cell_points * after + a;
+        double *own = after == 1 ? at : w.line;
+        synthesise(line, B->order[d], from + b * line->functions * after + a, after, own,
+                   w.transform);
+        for (int j = 0; j < line->cell_points && after > 1; j++) at[j * after] = own[j];
+      }
+    from = to;
+  }
+}
+
+static void torus_add_transposed(const dvi__space_operator *B, const double *values, double *U,
+                                 double *work)
+{
+  const dvi_space *space = B->space;
+  int64_t before, after;
+  const workplace w = lay_out_work(space, work);
+  const double *from = values;
+  for (int d = 0; d < space->dimension; d++) {
+    const dvi__line *line = &space->line[d];
+    double *to = d + 1 < space->dimension ? w.between[d] : U;
+    count_lines(space, d, &before, &after);
+    if (to != U) memset(to, 0, (size_t)mixed_size(space, d + 1) * sizeof *to);
+    for (int64_t b = 0; b < before; b++)
+      for (int64_t a = 0; a < after; a++) {
+        const double *at = from + b * line->cell_points * after + a;
+        for (int j = 0; j < line->cell_points; j++) w.line[j] = at[j * after];
+        add_analysis(line, B->order[d], w.line, to + b * line->functions * after + a, after,
+                     w.transform);
+      }
+    from = to;
+  }
+}
+
+static dvi_status torus_create(const dvi_space_options *options, dvi_space *space)
+{
+  (void)options;
+  DVI_TRY(dvi__box_place(space));
+  int64_t end[WORKPLACES];
+  measure_work(space, end);
+  space->work = end[WORKPLACES - 1];
+  return DVI_OK;
+}
+
+/* ---- points anywhere ---- */
+
+static double value_at(const dvi__line *line, int order, int64_t i, double x)
+{
+  const dvi__fourier_image image = differentiate(line, order, i);
+  const int64_t k = (image.other + 1) / 2;
+  const double turns = (x - line->from) / (line->to - line->from),
+               angle = 2 * pi * remainder((double)k * remainder(turns, 1), 1);
+  return image.factor * norm_of(line, i) *
+         (image.other % 2 == 0 && k > 0 ? sin(angle) : cos(angle));
+}
+
+static dvi_status torus_row(const dvi_space *space, const int *order, const double *x, int *column,
+                            double *value, int64_t *count)
+{
+  int64_t before = 1;
+  *count = 0;
+  for (int d = 0; d < space->dimension; d++)
+    if (!isfinite(x[d])) return DVI_OK;
+  value[0] = 1;
+  for (int d = space->dimension - 1; d >= 0; d--) {
+    const int64_t own = space->line[d].functions;
+    for (int64_t j = own - 1; j >= 0; j--) { /* backwards, because the row grows in place */
+      const double factor = value_at(&space->line[d], order[d], j, x[d]);
+      for (int64_t i = before - 1; i >= 0; i--) value[j * before + i] = value[i] * factor;
+    }
+    before *= own;
+  }
+  *count = space->functions;
+  for (int64_t i = 0; i < space->functions; i++) column[i] = (int)i;
+  return DVI_OK;
+}
+
+/* The mass is the identity. */
+static dvi_status torus_interpolate(const dvi_space *space, const dvi__sampled *f, double *U)
+{
+  const dvi__space_operator B = {.space = space};
+  double *values = DVI_NEW(double, space->points), *work = DVI_NEW(double, space->work);
+  dvi_status status = values != NULL && work != NULL
+                          ? dvi__space_sample(space->dimension, f, space->points, space->x, values)
+                          : dvi__fail(DVI_NO_MEMORY, "space: no memory for a transform");
+  if (status == DVI_OK) {
+    for (int64_t i = 0; i < space->points; i++) values[i] *= space->weight[i];
+    memset(U, 0, (size_t)space->functions * sizeof *U);
+    dvi__operator_add_transposed(&B, values, U, work);
+  }
+  dvi__release(values);
+  dvi__release(work);
+  return status;
+}
+
+static void torus_explain(const dvi_space *space, dvi__note *note)
+{
+  for (int d = 0; d < space->dimension; d++) {
+    const dvi__line *line = &space->line[d];
+    dvi__note_add(note, "axis %s, %g to %g, periodic: fourier, modes to %d: %lld functions, ",
+                  line->name, line->from, line->to, line->value[MODES], (long long)line->functions);
+    fourier_explain(line, note);
+    dvi__note_add(note, "\n");
+  }
+}
+
+const dvi__domain dvi__torus = {
+    .create = torus_create,
+    .apply = torus_apply,
+    .add_transposed = torus_add_transposed,
+    .row = torus_row,
+    .evaluate = dvi__evaluate_by_rows,
+    .interpolate = torus_interpolate,
+    .explain = torus_explain,
+};
+
+const dvi__kind dvi__fourier = {
+    .form = {.name = "fourier",
+             .key = {[MODES] = {"modes", 1, MODES_MOST - 1, 0, 0},
+                     [POINTS] = {"points", 1, DVI__FFT_MAX, 0, 0}}},
+    .create = fourier_create,
+    .destroy = destroy_plan,
+    .explain = fourier_explain,
+    .domain = &dvi__torus,
+    .domain_axes = 1,
+};
