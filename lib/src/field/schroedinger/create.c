@@ -23,7 +23,8 @@ static dvi_status check(const dvi_schroedinger_terms *terms)
                      "schroedinger: hbar = %g and mass = %g; both are above 0 and finite",
                      terms->hbar, terms->mass);
   if (!isfinite(terms->interaction))
-    return dvi__fail(DVI_BAD_ARGUMENT, "schroedinger: the interaction is %g; a finite one is needed",
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "schroedinger: the interaction is %g; a finite one is needed",
                      terms->interaction);
   if (terms->radial != 0 && terms->radial != 2 && terms->radial != 3)
     return dvi__fail(DVI_BAD_ARGUMENT,
@@ -43,7 +44,8 @@ static dvi_status check_radius(const dvi_schroedinger *s)
   for (int64_t k = 0; k < s->points; k++)
     if (s->x[k] < 0)
       return dvi__fail(DVI_BAD_ARGUMENT,
-                       "schroedinger: the radius is %g at a point; let the axis begin at 0", s->x[k]);
+                       "schroedinger: the radius is %g at a point; let the axis begin at 0",
+                       s->x[k]);
   return DVI_OK;
 }
 
@@ -176,9 +178,11 @@ static dvi_status add_square(const dvi_schroedinger *s, const dvi__csr *B, doubl
     return dvi__fail(DVI_NO_MEMORY, "schroedinger: no memory for %lld weights",
                      (long long)s->points);
   for (int64_t k = 0; k < s->points; k++) w[k] = factor * s->weight[k];
-  const dvi_matrix view = dvi__csr_view(B, 0),
-                   W = {.rows = s->points, .columns = s->points, .width = 1, .symmetric = 1,
-                        .value = w};
+  const dvi_matrix view = dvi__csr_view(B, 0), W = {.rows = s->points,
+                                                    .columns = s->points,
+                                                    .width = 1,
+                                                    .symmetric = 1,
+                                                    .value = w};
   dvi__csr square = {0}, more = {0};
   dvi_status status = dvi__csr_square(&view, &W, &square);
   const dvi_matrix old = dvi__csr_view(sum, 1), added = dvi__csr_view(&square, 1);
@@ -203,8 +207,7 @@ static dvi_status sum_kinetic(dvi_schroedinger *s)
   for (int d = 0; d < s->dimension; d++) {
     dvi__csr slope = {0};
     DVI_TRY(select_free(s, &s->slope[d].matrix, &slope));
-    const dvi_status status =
-        add_square(s, &slope, s->hbar * s->hbar / (2 * s->mass), &s->T);
+    const dvi_status status = add_square(s, &slope, s->hbar * s->hbar / (2 * s->mass), &s->T);
     dvi__csr_clear(&slope);
     DVI_TRY(status);
   }
@@ -284,8 +287,7 @@ static dvi_status make(const dvi_schroedinger_terms *terms, dvi_schroedinger *s)
   return make_operators(s);
 }
 
-dvi_status dvi_schroedinger_create(const dvi_schroedinger_terms *terms,
-                                   dvi_schroedinger **equation)
+dvi_status dvi_schroedinger_create(const dvi_schroedinger_terms *terms, dvi_schroedinger **equation)
 {
   if (equation == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "schroedinger: a place for the equation is needed");

@@ -202,8 +202,7 @@ static void find_residual(dvi__gauss *g)
   const int64_t n = g->s->free;
   for (int i = 0; i < g->stages; i++) {
     double *R = g->R + 2 * i * n;
-    for (int c = 0; c < 2; c++)
-      dvi__schroedinger_mass(g->s, g->Z + (2 * i + c) * n, R + c * n);
+    for (int c = 0; c < 2; c++) dvi__schroedinger_mass(g->s, g->Z + (2 * i + c) * n, R + c * n);
     for (int j = 0; j < g->stages; j++) {
       const double by = g->h / g->s->hbar * g->A[i][j], *H = g->HZ + 2 * j * n;
       for (int64_t k = 0; k < n; k++) {

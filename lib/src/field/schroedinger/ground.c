@@ -171,10 +171,11 @@ static dvi_status follow(ground *g)
     if (step < 1e-6) break;
   }
   if (done >= 1) return DVI_OK;
-  return dvi__fail(DVI_NOT_CONVERGED,
-                   "schroedinger: the ground state is lost at %g of the interaction; attraction may "
-                   "let it collapse, and repulsion needs cells that resolve it",
-                   g->strength);
+  return dvi__fail(
+      DVI_NOT_CONVERGED,
+      "schroedinger: the ground state is lost at %g of the interaction; attraction may "
+      "let it collapse, and repulsion needs cells that resolve it",
+      g->strength);
 }
 
 /* ---- the state ---- */

@@ -33,10 +33,11 @@ static dvi_status refuse_value(const dvi_schroedinger *s, double t, ptrdiff_t k,
   dvi__note note = {place, sizeof place, 0};
   for (int d = 0; d < s->dimension; d++)
     dvi__note_add(&note, "%s%g", d > 0 ? ", " : "", s->x[d * s->points + k]);
-  return dvi__fail(DVI_NOT_FINITE,
-                   "schroedinger: the potential is %g at (%s) and t = %g; a finite number is needed "
-                   "at each quadrature point, with walls as fixed ends of the domain",
-                   V, place, t);
+  return dvi__fail(
+      DVI_NOT_FINITE,
+      "schroedinger: the potential is %g at (%s) and t = %g; a finite number is needed "
+      "at each quadrature point, with walls as fixed ends of the domain",
+      V, place, t);
 }
 
 dvi_status dvi__schroedinger_potential(const dvi_schroedinger *s, double t, double *V)

@@ -107,10 +107,11 @@ static dvi_status iterate(span *b, int count)
     worst = renew(b, count);
     if (worst <= tolerance) return DVI_OK;
   }
-  return dvi__fail(DVI_NOT_CONVERGED,
-                   "schroedinger: %d stationary states have residuals of %g of their energies after "
-                   "%d iterations",
-                   count, worst, ITERATIONS);
+  return dvi__fail(
+      DVI_NOT_CONVERGED,
+      "schroedinger: %d stationary states have residuals of %g of their energies after "
+      "%d iterations",
+      count, worst, ITERATIONS);
 }
 
 static dvi_status allocate(span *b)

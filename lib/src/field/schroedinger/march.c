@@ -10,8 +10,9 @@
 
 /* ---- the step ---- */
 
-dvi_status dvi__wave_stepper_create(const dvi_schroedinger *s, const dvi__schroedinger_method *method,
-                               double h, dvi__wave_stepper *stepper)
+dvi_status dvi__wave_stepper_create(const dvi_schroedinger *s,
+                                    const dvi__schroedinger_method *method, double h,
+                                    dvi__wave_stepper *stepper)
 {
   if (method->is_split) {
     if (stepper->split == NULL) DVI_TRY(dvi__split_create(s, method->order, &stepper->split));
@@ -42,12 +43,11 @@ static void destroy(void *self)
 static dvi_status check_options(const dvi_schroedinger_march_options *options)
 {
   if (options == NULL || options->size != sizeof *options)
-    return dvi__fail(
-        DVI_BAD_ARGUMENT,
-        "schroedinger: set options.size to sizeof(dvi_schroedinger_march_options)");
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "schroedinger: set options.size to sizeof(dvi_schroedinger_march_options)");
   if (!(options->step > 0) || isinf(options->step))
-    return dvi__fail(DVI_BAD_ARGUMENT, "schroedinger: the step is %g; a finite one above 0 is needed",
-                     options->step);
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "schroedinger: the step is %g; a finite one above 0 is needed", options->step);
   if (!(options->span >= 0) || isinf(options->span))
     return dvi__fail(DVI_BAD_ARGUMENT, "schroedinger: the span is %g; 0 or more are possible",
                      options->span);
@@ -80,12 +80,12 @@ static dvi_status start(void *self, const dvi_march_state *state)
   if (state->E != NULL || state->B != NULL)
     return dvi__fail(DVI_BAD_ARGUMENT,
                      "schroedinger: a start has psi as its form A, and no forms E and B");
-  const ptrdiff_t bad =
-      state->A != NULL ? dvi__first_not_finite(2 * (size_t)s->functions, state->A) : -1;
+  const ptrdiff_t bad = state->A != NULL ? dvi__first_not_finite(2 * (size_t)s->functions, state->A)
+                                         : -1;
   if (bad >= 0)
-    return dvi__fail(DVI_NOT_FINITE, "schroedinger: the start has %g as the %s part of function %lld",
-                     state->A[bad], bad < s->functions ? "real" : "imaginary",
-                     (long long)(bad % s->functions));
+    return dvi__fail(
+        DVI_NOT_FINITE, "schroedinger: the start has %g as the %s part of function %lld",
+        state->A[bad], bad < s->functions ? "real" : "imaginary", (long long)(bad % s->functions));
   for (int c = 0; c < 2 && state->A != NULL; c++)
     dvi__schroedinger_restrict(s, state->A + c * s->functions, m->z + c * s->free);
   if (state->A == NULL) memset(m->z, 0, (size_t)(2 * s->free) * sizeof *m->z);
@@ -160,8 +160,7 @@ static const dvi__march_kind wave_kind = {.name = "schroedinger",
                                           .load = dvi__wave_load};
 
 dvi_status dvi_schroedinger_march(const dvi_schroedinger *equation,
-                                  const dvi_schroedinger_march_options *options,
-                                  dvi_march **march)
+                                  const dvi_schroedinger_march_options *options, dvi_march **march)
 {
   if (equation == NULL || march == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT,

@@ -10,18 +10,19 @@ typedef struct dvi__wave_stepper {
   dvi__split *split;
 } dvi__wave_stepper;
 
-dvi_status dvi__wave_stepper_create(const dvi_schroedinger *s, const dvi__schroedinger_method *method,
-                               double h, dvi__wave_stepper *stepper);
+dvi_status dvi__wave_stepper_create(const dvi_schroedinger *s,
+                                    const dvi__schroedinger_method *method, double h,
+                                    dvi__wave_stepper *stepper);
 void dvi__wave_stepper_destroy(dvi__wave_stepper *stepper);
 
 /* What is shown at the march's time, beside its state. */
 typedef struct dvi__view {
   int is_now, is_measured;
   dvi__wave_stepper stepper; /* of shorter steps, made when it is first needed */
-  double *z;            /* [2*free] */
-  double *compensation; /* [2*free] */
-  double *psi;          /* [2*functions] */
-  double *V, *u;        /* [points], [4*points] */
+  double *z;                 /* [2*free] */
+  double *compensation;      /* [2*free] */
+  double *psi;               /* [2*functions] */
+  double *V, *u;             /* [points], [4*points] */
   double *work;
   dvi_schroedinger_values values;
 } dvi__view;

@@ -8,11 +8,10 @@
 #include "num/finite.h"
 
 /* Give the values, or derivatives along an axis, of both parts at the points. */
-static void show(const dvi__space_operator *B, int64_t functions, int64_t points,
-                 const double *psi, double *u, double *work)
+static void show(const dvi__space_operator *B, int64_t functions, int64_t points, const double *psi,
+                 double *u, double *work)
 {
-  for (int c = 0; c < 2; c++)
-    dvi__operator_apply(B, psi + c * functions, u + c * points, work);
+  for (int c = 0; c < 2; c++) dvi__operator_apply(B, psi + c * functions, u + c * points, work);
 }
 
 static void add_point(const dvi_schroedinger *s, const double *V, const double *u, int64_t k,
@@ -29,8 +28,7 @@ static void add_point(const dvi_schroedinger *s, const double *V, const double *
 static void add_slopes(const dvi_schroedinger *s, const double *u, const double *slope, int d,
                        dvi_schroedinger_values *values)
 {
-  const double *v = u + s->points, *v_d = slope + s->points,
-               by = s->hbar * s->hbar / (2 * s->mass);
+  const double *v = u + s->points, *v_d = slope + s->points, by = s->hbar * s->hbar / (2 * s->mass);
   for (int64_t k = 0; k < s->points; k++) {
     const double w = s->weight[k];
     values->kinetic += by * w * (slope[k] * slope[k] + v_d[k] * v_d[k]);

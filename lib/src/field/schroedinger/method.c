@@ -54,8 +54,9 @@ static dvi_status read_option(int i, const char *text, dvi__schroedinger_method 
     return dvi__fail(DVI_BAD_OPTION,
                      "schroedinger: \"%s\" is no option of %s, which has \"%s\" with %s from %d to "
                      "%d",
-                     text, methods[i].name, option, methods[i].by == 2 ? "an even number" : "a number",
-                     methods[i].least, methods[i].most);
+                     text, methods[i].name, option,
+                     methods[i].by == 2 ? "an even number" : "a number", methods[i].least,
+                     methods[i].most);
   *(methods[i].method.is_split ? &method->order : &method->stages) = (int)number;
   return DVI_OK;
 }

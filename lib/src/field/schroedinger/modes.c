@@ -24,8 +24,7 @@ static dvi_status find_sparse(const dvi_schroedinger *s, int count, double *ener
   const int64_t entries = s->T.start[s->free];
   double *H = DVI_NEW(double, entries + s->points);
   if (H == NULL)
-    return dvi__fail(DVI_NO_MEMORY, "schroedinger: no memory for %lld entries",
-                     (long long)entries);
+    return dvi__fail(DVI_NO_MEMORY, "schroedinger: no memory for %lld entries", (long long)entries);
   double *V = H + entries;
   const double least = least_of(s);
   for (int64_t k = 0; k < s->points; k++) V[k] = s->still[k] - least;
@@ -84,7 +83,8 @@ void dvi__schroedinger_choose_sign(int64_t n, double *z)
   int64_t first = 0;
   for (int64_t i = 0; i < n; i++) most = fmax(most, fabs(z[i]));
   while (first < n - 1 && fabs(z[first]) < 0.5 * most) first++;
-  for (int64_t i = 0; i < n && z[first] < 0; i++) z[i] = -z[i];
+  const double sign = z[first] < 0 ? -1 : 1;
+  for (int64_t i = 0; i < n; i++) z[i] *= sign;
 }
 
 static double dot(int64_t n, const double *x, const double *y)
@@ -145,9 +145,8 @@ dvi_status dvi_schroedinger_modes(const dvi_schroedinger *equation, int count, d
                      "schroedinger: %d stationary states of %lld free functions; 1 to %lld can be "
                      "found, the more accurate the fewer",
                      count, (long long)s->free, (long long)most);
-  double *z = DVI_NEW(double, count * (s->free + 1));
-  if (z == NULL)
-    return dvi__fail(DVI_NO_MEMORY, "schroedinger: no memory for %d states", count);
+  double *z = DVI_NEW(double, count *(s->free + 1));
+  if (z == NULL) return dvi__fail(DVI_NO_MEMORY, "schroedinger: no memory for %d states", count);
   double *found = z + count * s->free;
   const dvi_status status = dvi__schroedinger_lowest(s, count, found, z);
   if (status == DVI_OK) memcpy(energy, found, (size_t)count * sizeof *energy);

@@ -15,6 +15,7 @@
 #include "core/status.h"
 #include "field/schroedinger/shifted.h"
 #include "field/schroedinger/steps.h"
+#include "num/compensated.h"
 
 enum { JUMPS_MOST = 9, LENGTHS_MOST = 4 };
 
@@ -26,12 +27,13 @@ struct dvi__split {
   int length_of[JUMPS_MOST];   /* its number among those that differ */
   double length[LENGTHS_MOST]; /* parts of h that differ */
   dvi__shifted *cayley;        /* NULL for fourier */
-  double *turn;                /* [lengths][2*free] cosines and sines of the modes of fourier */
+  double *turn; /* [lengths][free][3] cosine, sine and half their excess, for fourier */
   dvi__schroedinger_room room;
-  double *V;    /* [points] */
-  double *next; /* [2*free] */
-  double *rest; /* [2*free] */
-  double *at;   /* [3*free] potential, interaction and mass of each function of a nodal space */
+  double *V;             /* [points] */
+  double *next;          /* [2*free] */
+  double *rest;          /* [2*free] */
+  double *change, *left; /* [2*free], [4*free] of Cayley's transform */
+  double *at; /* [3*free] potential, interaction and mass of each function of a nodal space */
 };
 
 /* ---- jumps ---- */
@@ -63,16 +65,18 @@ static void add_jumps(dvi__split *p, int order, double part)
 static dvi_status check_points(const dvi_schroedinger *s)
 {
   if (s->is_fourier && s->points != s->functions)
-    return dvi__fail(DVI_UNSUPPORTED,
-                     "schroedinger: split turns phases at points, of which fourier needs as many as "
-                     "functions, and has %lld for %lld; give each axis points=2K+1 with modes=K, or "
-                     "take midpoint or gauss",
-                     (long long)s->points, (long long)s->functions);
+    return dvi__fail(
+        DVI_UNSUPPORTED,
+        "schroedinger: split turns phases at points, of which fourier needs as many as "
+        "functions, and has %lld for %lld; give each axis points=2K+1 with modes=K, or "
+        "take midpoint or gauss",
+        (long long)s->points, (long long)s->functions);
   if (s->is_fourier || dvi__space_is_nodal(s->space)) return DVI_OK;
-  return dvi__fail(DVI_UNSUPPORTED,
-                   "schroedinger: split turns phases at points, and needs functions that are 1 at "
-                   "one point each: fem with lumped=yes, legendre, or fourier; midpoint and gauss go "
-                   "with every space");
+  return dvi__fail(
+      DVI_UNSUPPORTED,
+      "schroedinger: split turns phases at points, and needs functions that are 1 at "
+      "one point each: fem with lumped=yes, legendre, or fourier; midpoint and gauss go "
+      "with every space");
 }
 
 static dvi_status make_room(dvi__split *p)
@@ -80,13 +84,15 @@ static dvi_status make_room(dvi__split *p)
   const dvi_schroedinger *s = p->s;
   DVI_TRY(dvi__schroedinger_make_room(s, &p->room));
   p->V = DVI_NEW(double, s->points);
-  p->next = DVI_NEW(double, 7 * s->free);
-  p->turn = DVI_NEW(double, s->is_fourier ? 2 * s->free * p->lengths : 1);
+  p->next = DVI_NEW(double, 13 * s->free);
+  p->turn = DVI_NEW(double, s->is_fourier ? 3 * s->free * p->lengths : 1);
   if (p->V == NULL || p->next == NULL || p->turn == NULL)
     return dvi__fail(DVI_NO_MEMORY, "schroedinger: no memory for %lld functions",
                      (long long)s->free);
   p->rest = p->next + 2 * s->free;
-  p->at = p->rest + 2 * s->free;
+  p->change = p->rest + 2 * s->free;
+  p->left = p->change + 2 * s->free;
+  p->at = p->left + 4 * s->free;
   return s->is_fourier ? DVI_OK : dvi__shifted_create(s, p->lengths, &p->cayley);
 }
 
@@ -119,14 +125,25 @@ void dvi__split_destroy(dvi__split **split)
   *split = NULL;
 }
 
+/* c^2 + s^2 - 1, which is a rounding of c and s. It is the same in each step and would add up. */
+static double excess(double c, double s)
+{
+  const dvi__twofold a = dvi__exact_product(c, c), b = dvi__exact_product(s, s);
+  const double larger = fmax(a.head, b.head), smaller = fmin(a.head, b.head);
+  return ((larger - 1) + smaller) + (a.tail + b.tail);
+}
+
 static void find_turns(dvi__split *p)
 {
   const int64_t n = p->s->free;
   for (int j = 0; j < p->lengths; j++)
     for (int64_t i = 0; i < n; i++) {
       const double angle = p->h * p->length[j] * p->s->diagonal[i] / p->s->hbar;
-      p->turn[(2 * j) * n + i] = cos(angle);
-      p->turn[(2 * j + 1) * n + i] = sin(angle);
+      const double c = cos(angle), s = sin(angle);
+      double *turn = p->turn + 3 * (j * n + i);
+      turn[0] = c;
+      turn[1] = s;
+      turn[2] = 0.5 * excess(c, s);
     }
 }
 
@@ -139,8 +156,7 @@ dvi_status dvi__split_prepare(dvi__split *p, double h)
     find_turns(p);
     return DVI_OK;
   }
-  for (int j = 0; j < p->lengths; j++)
-    c[j] = dvi__of_parts(0, 0.5 * h * p->length[j] / p->s->hbar);
+  for (int j = 0; j < p->lengths; j++) c[j] = dvi__of_parts(0, 0.5 * h * p->length[j] / p->s->hbar);
   const dvi_status status = dvi__shifted_factor(p->cayley, c, NULL);
   if (status != DVI_OK) p->h = 0;
   return status;
@@ -148,16 +164,18 @@ dvi_status dvi__split_prepare(dvi__split *p, double h)
 
 /* ---- flows ---- */
 
-/* Turn numbers u + iv by the phases of potentials V and interactions beta during a time. */
-static void turn_phases(int64_t count, double time, const double *V, const double *beta, double *u,
-                        double *v)
+/* Give the change (exp(-i angle) - 1)(u + iv) of numbers by the phases of potentials V and
+ * interactions beta during a time. Half angles let changes of the norm be roundings of the change,
+ * while roundings of cosines would add up from step to step. */
+static void turn_phases(int64_t count, double time, const double *V, const double *beta,
+                        const double *u, const double *v, double *du, double *dv)
 {
   for (int64_t k = 0; k < count; k++) {
-    const double density = u[k] * u[k] + v[k] * v[k],
-                 angle = time * (V[k] + (beta != NULL ? beta[k] * density : 0)), c = cos(angle),
-                 s = sin(angle), x = u[k];
-    u[k] = c * x + s * v[k];
-    v[k] = c * v[k] - s * x;
+    const double x = u[k], y = v[k], density = x * x + y * y,
+                 angle = time * (V[k] + (beta != NULL ? beta[k] * density : 0)),
+                 c = cos(0.5 * angle), s = sin(0.5 * angle), real = -2 * s * s, minus = 2 * s * c;
+    du[k] = real * x + minus * y;
+    dv[k] = real * y - minus * x;
   }
 }
 
@@ -165,15 +183,16 @@ static void turn_phases(int64_t count, double time, const double *V, const doubl
 static void turn_at_points(dvi__split *p, double time)
 {
   const dvi_schroedinger *s = p->s;
-  double *u = p->room.u;
+  double *u = p->room.u, *v = u + s->points;
   for (int c = 0; c < 2; c++)
     dvi__schroedinger_to_points(s, p->next + c * s->free, u + c * s->points, p->room.work);
-  turn_phases(s->points, time, p->V, s->beta, u, u + s->points);
-  memset(p->next, 0, (size_t)(2 * s->free) * sizeof *p->next);
-  for (int c = 0; c < 2; c++) {
-    for (int64_t k = 0; k < s->points; k++) u[c * s->points + k] *= s->weight[k];
-    dvi__schroedinger_add_points(s, u + c * s->points, p->next + c * s->free, p->room.work);
+  turn_phases(s->points, time, p->V, s->beta, u, v, u, v);
+  for (int64_t k = 0; k < s->points; k++) {
+    u[k] *= s->weight[k];
+    v[k] *= s->weight[k];
   }
+  for (int c = 0; c < 2; c++)
+    dvi__schroedinger_add_points(s, u + c * s->points, p->next + c * s->free, p->room.work);
 }
 
 /* Give each nodal function the mean of values at its points, of which ends of cells have two. */
@@ -195,7 +214,8 @@ static void turn_at_nodes(dvi__split *p, double time)
   average(p, p->V, p->at);
   if (s->beta != NULL) average(p, s->beta, p->at + s->free);
   turn_phases(s->free, time, p->at, s->beta != NULL ? p->at + s->free : NULL, p->next,
-              p->next + s->free);
+              p->next + s->free, p->rest, p->rest + s->free);
+  for (int64_t i = 0; i < 2 * s->free; i++) p->next[i] += p->rest[i];
 }
 
 static dvi_status turn_potential(dvi__split *p, double t, double time)
@@ -211,27 +231,43 @@ static dvi_status turn_potential(dvi__split *p, double t, double time)
 static void turn_modes(dvi__split *p, int length)
 {
   const int64_t n = p->s->free;
-  const double *cosine = p->turn + 2 * length * n, *sine = cosine + n;
   for (int64_t i = 0; i < n; i++) {
-    const double x = p->next[i], y = p->next[n + i];
-    p->next[i] = cosine[i] * x + sine[i] * y;
-    p->next[n + i] = cosine[i] * y - sine[i] * x;
+    const double *turn = p->turn + 3 * (length * n + i), x = p->next[i], y = p->next[n + i],
+                 u = turn[0] * x + turn[1] * y, v = turn[0] * y - turn[1] * x;
+    p->next[i] = u - turn[2] * u;
+    p->next[n + i] = v - turn[2] * v;
   }
 }
 
-/* psi - m solves (M + ic T) (psi - m) = ic T psi. */
+/* r = ic T z - (M + ic T) d. */
+static void find_residual(dvi__split *p, double c, const double *z, const double *d, double *r)
+{
+  const int64_t n = p->s->free;
+  double *left = p->left, *T = p->left + 2 * n;
+  for (int64_t i = 0; i < 2 * n; i++) left[i] = z[i] - d[i];
+  for (int part = 0; part < 2; part++) {
+    dvi__schroedinger_mass(p->s, d + part * n, r + part * n);
+    dvi__schroedinger_kinetic(p->s, left + part * n, T + part * n);
+  }
+  for (int64_t i = 0; i < n; i++) {
+    r[i] = -c * T[n + i] - r[i];
+    r[n + i] = c * T[i] - r[n + i];
+  }
+}
+
+/* d = psi - m solves (M + ic T) d = ic T psi. The second correction takes away the roundings of the
+ * factor, which would add up from step to step. */
 static void take_cayley(dvi__split *p, int length)
 {
   const int64_t n = p->s->free;
   const double c = 0.5 * p->h * p->length[length] / p->s->hbar;
-  dvi__schroedinger_kinetic(p->s, p->next, p->rest + n);
-  dvi__schroedinger_kinetic(p->s, p->next + n, p->rest);
-  for (int64_t i = 0; i < n; i++) {
-    p->rest[i] *= -c;
-    p->rest[n + i] *= c;
+  memset(p->change, 0, (size_t)(2 * n) * sizeof *p->change);
+  for (int twice = 0; twice < 2; twice++) {
+    find_residual(p, c, p->next, p->change, p->rest);
+    dvi__shifted_solve(p->cayley, length, p->rest);
+    for (int64_t i = 0; i < 2 * n; i++) p->change[i] += p->rest[i];
   }
-  dvi__shifted_solve(p->cayley, length, p->rest);
-  for (int64_t i = 0; i < 2 * n; i++) p->next[i] -= 2 * p->rest[i];
+  for (int64_t i = 0; i < 2 * n; i++) p->next[i] -= 2 * p->change[i];
 }
 
 /* ---- the step ---- */

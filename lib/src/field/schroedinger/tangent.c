@@ -70,7 +70,7 @@ void dvi__tangent_destroy(dvi__tangent **tangent)
 }
 
 dvi_status dvi__tangent_solve(dvi__tangent *a, const double *V, const double *c, const double *b,
-                               double *x)
+                              double *x)
 {
   const dvi_schroedinger *s = a->s;
   const int64_t n = s->free;

@@ -10,6 +10,6 @@ void dvi__tangent_destroy(dvi__tangent **tangent);
 
 /* Solve (T + V) x - c y = b with c.x = 0 for x [free] and y. V is [points]. DVI_SINGULAR. */
 dvi_status dvi__tangent_solve(dvi__tangent *tangent, const double *V, const double *c,
-                               const double *b, double *x);
+                              const double *b, double *x);
 
 #endif

@@ -43,7 +43,7 @@ static dvi_status allocate(dvi__wave_march *m)
   const dvi_schroedinger *s = m->s;
   m->observables = FIRST + FOR_AXIS * s->dimension + m->probes * (1 + s->dimension);
   m->name = dvi__allocate((size_t)m->observables, sizeof *m->name);
-  m->probe = DVI_NEW(double, m->probes *s->dimension);
+  m->probe = DVI_NEW(double, m->probes * s->dimension);
   m->view = DVI_NEW(dvi__view, 1);
   dvi__view *v = m->view;
   if (v != NULL) {
@@ -191,7 +191,7 @@ dvi_status dvi__wave_observe(const void *self, int i, double *value)
   DVI_TRY(measure(m));
   const dvi_schroedinger_values *v = &m->view->values;
   const double first[FIRST] = {v->norm, v->energy, v->kinetic, v->potential, v->interaction};
-  *value = i < FIRST ? first[i]
+  *value = i < FIRST          ? first[i]
            : i < FIRST + axes ? v->position[i - FIRST]
                               : v->momentum[i - FIRST - axes];
   return DVI_OK;
