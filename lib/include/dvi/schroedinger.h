@@ -130,8 +130,7 @@ const char *dvi_schroedinger_method_name(int i);
  *  dvi_march_advance returns DVI_NOT_CONVERGED if the iteration of a step does not converge, which
  *  stands then at the step before. A shorter step does. */
 dvi_status dvi_schroedinger_march(const dvi_schroedinger *equation,
-                                  const dvi_schroedinger_march_options *options,
-                                  dvi_march **march);
+                                  const dvi_schroedinger_march_options *options, dvi_march **march);
 
 /** Compute the lowest stationary states H psi = E M psi of the equation without interaction, at the
  *  time 0. psi is real.

@@ -133,22 +133,28 @@ static int is_positive(ground *g)
   return fmin(-least, most) <= 1e-2 * fmax(-least, most);
 }
 
-/* Correct until corrections are roundings. Returns 0 if the method does not converge quickly. */
-static int converge(ground *g)
+/* Correct until corrections are roundings. DVI_NOT_CONVERGED or DVI_SINGULAR if the state is too far
+ * from the guess. */
+static dvi_status converge(ground *g)
 {
   const int64_t n = g->s->free;
-  double before = 1;
+  double size = 1, before = 2;
   settle(g);
-  for (int i = 0; i < NEWTON; i++) {
-    if (correct(g) != DVI_OK) return 0;
-    for (int64_t k = 0; k < n; k++) g->z[k] += g->change[k];
-    const double size = sqrt(dot(n, g->change, g->change) / dot(n, g->z, g->z));
-    if (!(size < before)) return before < 1e-9 && is_positive(g);
-    settle(g);
-    if (size < 1e-15) break;
+  for (int i = 0; i < NEWTON && size < before && size > 1e-15; i++) {
     before = size;
+    DVI_TRY(correct(g));
+    for (int64_t k = 0; k < n; k++) g->z[k] += g->change[k];
+    settle(g);
+    size = sqrt(dot(n, g->change, g->change) / dot(n, g->z, g->z));
   }
-  return before < 1e-9 && is_positive(g);
+  if (size < 1e-9 && is_positive(g)) return DVI_OK;
+  return dvi__fail(DVI_NOT_CONVERGED, "schroedinger: Newton's method ends with changes of %g",
+                   size);
+}
+
+static int is_hopeless(dvi_status status)
+{
+  return status != DVI_OK && status != DVI_NOT_CONVERGED && status != DVI_SINGULAR;
 }
 
 /* Follow the state to the whole interaction. */
@@ -158,9 +164,11 @@ static dvi_status follow(ground *g)
   double done = 0, step = 1;
   double *good = g->work + 5 * g->s->free;
   memcpy(good, g->z, size);
-  for (int i = 0; i < STEPS && done < 1; i++) {
+  for (int i = 0; i < STEPS && done < 1 && step > 1e-6; i++) {
     g->strength = fmin(1, done + step);
-    if (converge(g)) {
+    const dvi_status status = converge(g);
+    if (is_hopeless(status)) return status;
+    if (status == DVI_OK) {
       memcpy(good, g->z, size);
       done = g->strength;
       step *= 2;
@@ -168,14 +176,14 @@ static dvi_status follow(ground *g)
       memcpy(g->z, good, size);
       step /= 4;
     }
-    if (step < 1e-6) break;
   }
   if (done >= 1) return DVI_OK;
   return dvi__fail(
       DVI_NOT_CONVERGED,
       "schroedinger: the ground state is lost at %g of the interaction; attraction may "
-      "let it collapse, and repulsion needs cells that resolve it",
-      g->strength);
+      "let it collapse or leave its place open, and repulsion needs cells that resolve "
+      "it",
+      done);
 }
 
 /* ---- the state ---- */
