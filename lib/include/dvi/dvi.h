@@ -29,6 +29,7 @@
 #include <dvi/reference.h>
 #include <dvi/rotations.h>
 #include <dvi/run.h>
+#include <dvi/schroedinger.h>
 #include <dvi/sensitivity.h>
 #include <dvi/shapes.h>
 #include <dvi/sines.h>
