@@ -1,6 +1,7 @@
 /* Problems from scene files. The subcommands treat them as problems of the catalogue. */
 #include "load/scene.h"
 
+#include "load/density.h"
 #include "load/field.h"
 
 #include <dvi/scene.h>
@@ -259,6 +260,11 @@ void scene_tell(const problem *scene)
     (void)printf(", quadratic potentials %d", facts.quadratic_potentials);
   if (count_fast_potentials(scene->terms) > 0)
     (void)printf(", fast potentials %d", count_fast_potentials(scene->terms));
+  if (density_of(scene) != NULL) {
+    (void)printf("\n");
+    density_tell(scene);
+    return;
+  }
   if (dvi_scene_field(scene->scene) != NULL) {
     (void)printf("\n");
     field_tell(dvi_scene_field(scene->scene));

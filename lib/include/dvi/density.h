@@ -169,6 +169,12 @@ dvi_status dvi_density_system_terms(const dvi_density *density, dvi_system_terms
 /** Give all coefficients U [components*functions] from coordinates q, at time t. */
 dvi_status dvi_density_lift(const dvi_density *density, double t, const double *q, double *U);
 
+/** Give the rates of all coefficients [components*functions] from velocities v, at time t.
+ *
+ *  @retval (others)  as the callbacks fail */
+dvi_status dvi_density_lift_rate(const dvi_density *density, double t, const double *v,
+                                 double *rate);
+
 /** Give coordinates q, velocities v, and momenta p of coefficients U and their rates
  *  [components*functions] at time 0. U and rate may be NULL for 0, and q, v and p NULL if they are
  *  not wanted.

@@ -183,6 +183,21 @@ static void find_reach(dvi__integral *integral)
   }
 }
 
+/* Tell if the points of each coordinate's range touch no coordinate beyond its reach. Where an end
+ * is the other end, as on a circle, the range of the first coordinate has all points. */
+static int has_near_points(const dvi__integral *integral)
+{
+  for (int p = 0; p < integral->parts; p++) {
+    const dvi__density_part *part = integral->part[p];
+    const dvi__point_groups *g = &part->group;
+    for (int64_t i = 0; i < integral->density->unknowns; i++)
+      for (int64_t k = part->low[i]; k < part->high[i]; k++)
+        for (int64_t e = g->start[g->of[k]]; e < g->start[g->of[k] + 1]; e++)
+          if (g->list[e] < i - integral->reach || g->list[e] > i + integral->reach) return 0;
+  }
+  return 1;
+}
+
 /* ---- integrals ---- */
 
 dvi_status dvi__integral_add(dvi__integral *integral, dvi__density_part *part)
@@ -209,7 +224,8 @@ dvi_status dvi__integral_make(const dvi_density *density, double sign, unsigned 
   DVI_TRY(make_patterns(integral, second));
   find_reach(integral);
   integral->has_hessian = 1;
-  integral->has_ranges = density->dimension == 1 && 2 * integral->reach < density->unknowns;
+  integral->has_ranges = density->dimension == 1 && 2 * integral->reach < density->unknowns &&
+                         has_near_points(integral);
   return DVI_OK;
 }
 

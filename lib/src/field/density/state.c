@@ -20,6 +20,22 @@ dvi_status dvi_density_lift(const dvi_density *density, double t, const double *
   return dvi__density_refuse(failed, "a value that moves");
 }
 
+dvi_status dvi_density_lift_rate(const dvi_density *density, double t, const double *v,
+                                 double *rate)
+{
+  if (density == NULL || v == NULL || rate == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "density: a field, velocities and rates are needed");
+  double *G_rate = DVI_NEW(double, density->moving);
+  if (G_rate == NULL) return dvi__fail(DVI_NO_MEMORY, "density: no memory for a state");
+  const int failed = dvi__density_moving(density, t, NULL, G_rate, NULL);
+  for (int64_t i = 0; i < density->places && failed == 0; i++) {
+    const int number = density->number[i];
+    rate[i] = number >= 0 ? v[number] : number < -1 ? G_rate[-2 - number] : 0;
+  }
+  dvi__release(G_rate);
+  return dvi__density_refuse(density, failed, "the rate of a value that moves");
+}
+
 static void take(const dvi_density *density, const double *U, double *q)
 {
   for (int64_t i = 0; i < density->unknowns && q != NULL; i++)

@@ -17,14 +17,17 @@ static dvi_status spline_create(const dvi_space_options *options, const dvi_axis
                                 dvi__line *line)
 {
   (void)options;
-  const int degree = line->value[DEGREE], points = line->value[POINTS];
+  const int degree = line->value[DEGREE],
+            points = line->value[POINTS] != 0 ? line->value[POINTS] : degree + 1;
+  const double cells = line->value[CELLS];
+  DVI_TRY(dvi__space_check_sizes(cells, points * cells));
   DVI_TRY(dvi__line_divide(axis, line->value[CELLS], line));
   line->degree = degree;
   line->locals = degree + 1;
   line->stride = 1;
   line->smoothness = degree;
   line->functions = line->cells + (line->periodic ? 0 : degree);
-  return dvi__line_gauss(points != 0 ? points : degree + 1, line);
+  return dvi__line_gauss(points, line);
 }
 
 static double knot(const dvi__line *line, int64_t i)
@@ -74,9 +77,9 @@ static void spline_local(const dvi__line *line, int order, int64_t cell, double 
 
 const dvi__kind dvi__spline = {
     .form = {.name = "spline",
-             .key = {[DEGREE] = {"degree", 1, DEGREE_MOST, 3, 0},
-                     [CELLS] = {"cells", 1, CELLS_MOST, 0, 0},
-                     [POINTS] = {"points", 1, POINTS_MOST, 0, 0}}},
+             .key = {[DEGREE] = {"degree", 1, DEGREE_MOST, 3, NULL},
+                     [CELLS] = {"cells", 1, CELLS_MOST, 0, NULL},
+                     [POINTS] = {"points", 1, POINTS_MOST, 0, NULL}}},
     .create = spline_create,
     .local = spline_local,
     .explain = dvi__explain_gauss,
