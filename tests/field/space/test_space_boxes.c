@@ -279,7 +279,7 @@ START_TEST(specifications_that_are_wrong_are_refused_by_name)
   refuse_kind("fem:cells=", "space: fem: cells=; whole numbers from 1");
   refuse_kind("fem:cells=99999999999999999999", "whole numbers from 1 to 1073741824");
   refuse_kind("fem:degree=9,cells=4", "space: fem: degree=9; whole numbers from 1 to 8 in plain");
-  refuse_kind("fem:cells=4,lumped=true", "space: fem: lumped=true; yes and no are possible");
+  refuse_kind("fem:cells=4,lumped=true", "space: fem: lumped=true; ");
   refuse_kind("fem:cells=4,points=3,lumped=yes",
               "points=3 with lumped=yes, whose points are the nodes");
   refuse_kind("fem:cells=4,points=81", "space: fem: points=81; whole numbers from 1 to 80");
@@ -351,6 +351,13 @@ START_TEST(options_that_are_wrong_are_refused)
          DVI_BAD_ARGUMENT, "space: axes 0 and 2 have the same name, x");
   refuse(&(dvi_space_options){.size = SIZE, .kind = "fem:cells=30000", .axis = axis, .axes = 2},
          DVI_BAD_SIZE, "space: 9e+08 functions and 3.6e+09 points asked, 2147483647 possible");
+  refuse(
+      &(dvi_space_options){.size = SIZE, .kind = "fem:cells=1073741824", .axis = axis, .axes = 1},
+      DVI_BAD_SIZE, "space: 1.07e+09 functions and 2.15e+09 points asked");
+  refuse(
+      &(dvi_space_options){
+          .size = SIZE, .kind = "spline:cells=1000000000", .axis = axis, .axes = 1},
+      DVI_BAD_SIZE, "space: 1e+09 functions and 4e+09 points asked");
   ck_assert_int_eq(dvi_space_create(NULL, NULL), DVI_BAD_ARGUMENT);
   check_words("space: the place for the space is NULL");
   dvi_mesh_destroy(&mesh);
