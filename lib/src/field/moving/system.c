@@ -50,7 +50,7 @@ static int has_variable(const dvi_moving *m, int component, int rate)
 /* Tell if a translation of one number of all nodes leaves the Lagrangian as it is. */
 static int is_symmetry(const dvi_moving *m, int number)
 {
-  if (number == 0) return m->periodic && m->translations && m->motion == DVI_MOVING_FREE;
+  if (number == 0) return m->periodic && m->translations && dvi__moving_is_free(m);
   const int fixed = !m->periodic && (m->fixed[0] || m->fixed[1]);
   return !fixed && m->mean.mean == NULL && !has_variable(m, number - 1, 0);
 }
@@ -110,6 +110,14 @@ dvi_status dvi_moving_system(dvi_moving *moving, dvi_system **system)
                                .by_q = drag,
                                .by_v = drag,
                                .user = moving};
+  const dvi_holonomic arcs = {.name = "arcs",
+                              .count = moving->cells - 1,
+                              .value = dvi__moving_arc_value,
+                              .gradient = dvi__moving_arc_gradient,
+                              .hessian = dvi__moving_arc_hessian,
+                              .gradients = view(&moving->arcs),
+                              .qq = pattern,
+                              .user = moving};
   const int symmetries = find_symmetries(moving, symmetry);
   const dvi_system_terms terms = {.dimension = moving->unknowns,
                                   .lagrangian = &lagrangian,
@@ -117,6 +125,8 @@ dvi_status dvi_moving_system(dvi_moving *moving, dvi_system **system)
                                   .symmetry_count = symmetries,
                                   .forces = moving->viscosity > 0 ? &viscosity : NULL,
                                   .force_count = moving->viscosity > 0,
+                                  .holonomics = moving->motion == DVI_MOVING_EQUAL ? &arcs : NULL,
+                                  .holonomic_count = moving->motion == DVI_MOVING_EQUAL,
                                   .autonomous = moving->path == NULL &&
                                                 !moving->part.depends_on_time};
   return dvi_system_create(&terms, system);
