@@ -5,7 +5,7 @@
  *  translations in space are a symmetry of it. With a density l per length the Lagrangian is
  *
  *      L = sum over cells of int l(t, x, u, u_t, u_x) dx
- *          + mu/2 sum x_a'^2 - kappa sum (h_e - H_e)^2 / h_e - eps^2/2 sum u_xx^2
+ *          + mu/2 sum x_a'^2 - kappa sum (h_e - H_e)^2 / h_e - eps^2/2 int u_xx^2 dx
  *
  *  where h_e are the lengths of the cells, H_e those of reference, u_x = Du/h_e, and
  *  u_t = u' - u_x x' with u' and x' along a node's path. mu is a mass of the nodes, and kappa keeps
@@ -55,8 +55,8 @@ typedef struct dvi_moving_terms {
   dvi_axis axis;  /**< its nodes, if it has any, are those of reference. Without a kind */
   int cells;      /**< at least 2. 0 with the axis's nodes, which determine it */
   int components; /**< 1 to DVI_MOVING_COMPONENTS_MAX. Default: 1 */
-  /** The density, with variables u, u_t and u_x of the components. Its kind does not matter.
-   *  Required */
+  /** The density, with variables u, u_t and u_x of the components. Its kind and its derivative in
+   *  time are not read. Required */
   const dvi_density_part *part;
   const dvi_moving_mean *mean; /**< a part of the density that is integrated exactly */
   int translations;            /**< not 0 if l does not depend on x */
