@@ -13,7 +13,7 @@
 #include "field/algebra/definite.h"
 #include "field/density/density.h"
 
-enum { ITERATIONS = 60, HALVINGS = 12 };
+enum { ITERATIONS = 60, HALVINGS = 12, FULL_MOST = 2000 /* coordinates of a full Hessian */ };
 
 /* A step that is no larger beside q ends the iteration, if |F| falls no more. */
 static const double small_step = 1e-9;
@@ -33,7 +33,7 @@ static dvi_status add_gradient(const dvi__integral *integral, double sign, const
   const int failed = dvi__integral_evaluate(integral, &(dvi__density_point){.q = q},
                                             &(dvi__density_sums){.q = part});
   for (int64_t i = 0; i < integral->density->unknowns; i++) F[i] += sign * part[i];
-  return dvi__density_refuse(integral->density, failed, integral->part[0]->name);
+  return dvi__density_refuse(failed, integral->part[0]->name);
 }
 
 /* Give F at q. part has room for as many numbers. */
@@ -57,11 +57,11 @@ static dvi_status find_gradient(const dvi_density *density, const double *q, dou
 static dvi_status make_part(const dvi__integral *integral, const double *q, dvi__csr *part)
 {
   const int64_t n = integral->density->unknowns;
-  if (!integral->has_hessian)
+  if (integral->density->is_fourier && n > FULL_MOST)
     return dvi__fail(DVI_UNSUPPORTED,
                      "density: part '%s' has a full Hessian on fourier, which is for at most %d "
                      "coordinates, not %lld: take kind=spline or fem",
-                     integral->part[0]->name, (int)DVI__MODES_WITH_HESSIAN, (long long)n);
+                     integral->part[0]->name, (int)FULL_MOST, (long long)n);
   if (integral->density->is_fourier) {
     DVI_TRY(dvi__csr_allocate(n, n, n * n, part));
     for (int64_t i = 0; i <= n; i++) part->start[i] = i * n;
@@ -71,7 +71,7 @@ static dvi_status make_part(const dvi__integral *integral, const double *q, dvi_
   }
   const int failed = dvi__integral_evaluate(integral, &(dvi__density_point){.q = q},
                                             &(dvi__density_sums){.qq = part->value});
-  return dvi__density_refuse(integral->density, failed, integral->part[0]->name);
+  return dvi__density_refuse(failed, integral->part[0]->name);
 }
 
 /* Add a sign times the Hessian of an integral to a matrix. */
