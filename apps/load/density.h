@@ -18,9 +18,9 @@ void density_tell(const problem *scene);
 /** Return the number of coefficients of all components. */
 int64_t density_coefficients(const dvi_density *density);
 
-/** Write fields [count][coefficients] as CSV, a row for each quadrature point, with its position and
- * the values of all components. With several fields the names get numbers from 1. Returns DONE, or
- * complains and returns the exit code. */
+/** Write fields [count][coefficients] as CSV, a row for each quadrature point, with its position
+ * and the values of all components. With several fields the names get numbers from 1. Returns DONE,
+ * or complains and returns the exit code. */
 int density_write(const problem *scene, const char *path, int count, const double *U);
 
 /** Write the values at the vertices of the mesh likewise to a .vtu file. */
