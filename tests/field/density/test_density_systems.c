@@ -203,6 +203,38 @@ START_TEST(fluxes_and_robin_terms_pull_at_ends)
 }
 END_TEST
 
+/* u = x^2 - y^2 has the fluxes 2 x n_x - 2 y n_y, and on top, with a = 0.5, g = -2 + u/2. */
+static int saddle_flux(int64_t count, double t, const double *x, double *datum, void *user)
+{
+  (void)t, (void)user;
+  for (int64_t k = 0; k < count; k++) {
+    const int is_top = x[count + k] == 1 && fabs(x[k]) < 1;
+    datum[k] = is_top ? -2 + 0.5 * (x[k] * x[k] - 1) : x[k] == 1 ? 2 : -2;
+  }
+  return 0;
+}
+
+START_TEST(fluxes_and_robin_terms_pull_at_sides)
+{
+  static const char *const squares[] = {"fem:degree=2,cells=3", "spline:degree=2,cells=3"};
+  const dvi_density_condition sides[] = {{.part = "left", .kind = DVI_FIXED, .datum = saddle},
+                                         {.part = "right", .datum = saddle_flux},
+                                         {.part = "bottom", .datum = saddle_flux},
+                                         {.part = "top", .datum = saddle_flux, .robin = 0.5}};
+  for (int i = 0; i < 2; i++) {
+    density_field field = make_density(make_density_space(squares[i], 2, -1, 1, 0),
+                                       &elastic_part_2d, 1, sides, 4);
+    ck_assert_msg(dvi_density_solve(field.density, field.U, NULL) == DVI_OK, "%s",
+                  dvi_last_error());
+    ck_assert_int_eq(dvi_density_project(field.density, field.U, NULL, field.q, NULL, NULL),
+                     DVI_OK);
+    const double x[2] = {0.3, -0.8};
+    ck_assert_double_eq_tol(density_at(&field, 0, x), 0.09 - 0.64, 1e-12);
+    end_density(&field);
+  }
+}
+END_TEST
+
 /* Values that move: u = sin(t - x) on [0,1]. */
 static int moving(int64_t count, double t, const double *x, double *datum, void *user)
 {
@@ -300,6 +332,7 @@ SUITE(density_systems)
   tcase_add_test(tests, fixed_ends_hold_a_line);
   tcase_add_test(tests, fixed_sides_hold_a_saddle);
   tcase_add_test(tests, fluxes_and_robin_terms_pull_at_ends);
+  tcase_add_test(tests, fluxes_and_robin_terms_pull_at_sides);
   tcase_add_test(tests, values_that_move_stay_in_the_lagrangian);
   tcase_add_test(tests, callbacks_agree_with_differences_for_values_that_move);
   tcase_add_test(tests, lift_undoes_project);

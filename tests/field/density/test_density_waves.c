@@ -177,8 +177,8 @@ static int kink(int64_t count, const double *x, double *f, void *user)
   return 0;
 }
 
-/* The modes of the kink are 0, 3/2, and those above 2. The second one falls off as exp(-|x|/sqrt 2),
- * so that ends at 16 change its eigenvalue by 1e-9. */
+/* The modes of the kink are 0, 3/2, and those above 2. The second one falls off as
+ * exp(-|x|/sqrt 2), so that ends at 16 change its eigenvalue by 1e-9. */
 START_TEST(kinks_have_known_modes)
 {
   const dvi_density_part parts[] = {kinetic_part, elastic_part, double_well_part};

@@ -1,8 +1,4 @@
-/* What the boundary says: values that are fixed, values that move, fluxes g and Robin's terms a,
- *
- *     l gets g u - a u^2/2 on the boundary,
- *
- * at the points where functions of the boundary are 1. */
+/* Conditions of the boundary, and the values that they fix, at rest or moving. */
 #include <math.h>
 #include <string.h>
 
@@ -105,8 +101,9 @@ static dvi_status check(const dvi_density *density, const dvi_density_condition 
                    condition->part, density->is_fourier ? ": fourier has none" : "");
 }
 
-static dvi_status check_data(const dvi_density *density, const dvi_density_condition *condition,
-                             int failed, int64_t count, const double *x, const double *datum)
+dvi_status dvi__density_check_datum(const dvi_density *density,
+                                    const dvi_density_condition *condition, int failed,
+                                    int64_t count, const double *x, const double *datum)
 {
   if (failed != 0)
     return dvi__fail(DVI_CALLBACK_FAILED, "density: the datum on \"%s\" returned %d",
@@ -138,7 +135,7 @@ static dvi_status find_values(const dvi_density *density, const dvi_density_cond
     double *x = copy_sites(density, count, function);
     if (x == NULL) return no_memory();
     const int failed = condition->datum(count, 0, x, value, condition->user);
-    const dvi_status status = check_data(density, condition, failed, count, x, value);
+    const dvi_status status = dvi__density_check_datum(density, condition, failed, count, x, value);
     dvi__release(x);
     return status;
   }
@@ -249,108 +246,4 @@ int dvi__density_moving(const dvi_density *density, double t, double *G, double 
                              second != NULL ? second + m->first : NULL, m->given.user);
   }
   return failed;
-}
-
-/* ---- fluxes ---- */
-
-/* l = g u - a u^2/2 with the variable u. */
-static int boundary_density(int count, double t, const double *x, const double *z, double *l,
-                            double *l_z, double *l_zz, void *user)
-{
-  const dvi__boundary_term *term = user;
-  const dvi_density_condition *c = &term->given;
-  const double a = c->robin;
-  double datum[64];
-  for (int k = 0; k < count && c->datum == NULL; k++) datum[k] = 0;
-  if (c->datum != NULL && (l != NULL || l_z != NULL)) {
-    const int failed = c->datum(count, term->is_moving ? t : 0, x, datum, c->user);
-    if (failed != 0) return failed;
-  }
-  for (int k = 0; k < count; k++) {
-    if (l != NULL) l[k] = z[k] * (datum[k] - 0.5 * a * z[k]);
-    if (l_z != NULL) l_z[k] = datum[k] - a * z[k];
-    if (l_zz != NULL) l_zz[k] = -a;
-  }
-  return 0;
-}
-
-static int boundary_rate(int count, double t, const double *x, const double *z, double *l_t,
-                         void *user)
-{
-  const dvi_density_condition *c = &((const dvi__boundary_term *)user)->given;
-  const int failed = c->rate(count, t, x, l_t, NULL, c->user);
-  for (int k = 0; k < count && failed == 0; k++) l_t[k] *= z[k];
-  return failed;
-}
-
-static dvi_status fill_points(const dvi_density *density, int64_t count, const int *function,
-                              dvi__density_part *part)
-{
-  const int dimension = density->dimension;
-  part->points = count;
-  part->own = DVI_NEW(double, (dimension + 1) * count);
-  part->site = dvi__duplicate(function, (size_t)count, sizeof *function);
-  if (part->own == NULL || part->site == NULL) return no_memory();
-  for (int d = 0; d < dimension; d++)
-    for (int64_t i = 0; i < count; i++)
-      part->own[d * count + i] = density->site[d * density->functions + function[i]];
-  for (int64_t i = 0; i < count; i++) part->own[dimension * count + i] = 1;
-  part->x = part->own;
-  part->weight = part->own + dimension * count;
-  return DVI_OK;
-}
-
-static dvi_status add_flux(dvi_density *density, const dvi_density_condition *condition, int c)
-{
-  static const char name[] = "boundary";
-  int64_t count;
-  const int *function = dvi_space_boundary(density->space, condition->part, &count);
-  dvi__density_part *part = density->part + density->parts++;
-  const dvi_jet jet = {.component = c};
-  static const int pair[1][2] = {{0, 0}};
-  part->boundary = DVI_NEW(dvi__boundary_term, 1);
-  part->name = dvi__duplicate(name, sizeof name, 1);
-  part->given = (dvi_density_part){.name = part->name,
-                                   .kind = DVI_DENSITY_QUADRATIC,
-                                   .variable = dvi__duplicate(&jet, 1, sizeof jet),
-                                   .variables = 1,
-                                   .pair = dvi__duplicate(pair, 1, sizeof pair),
-                                   .pairs = 1,
-                                   .density = boundary_density,
-                                   .time_derivative = condition->rate ? boundary_rate : NULL,
-                                   .user = part->boundary,
-                                   .depends_on_time = condition->rate != NULL};
-  if (!part->boundary || !part->name || !part->given.variable || !part->given.pair)
-    return no_memory();
-  *part->boundary = (dvi__boundary_term){.given = *condition, .is_moving = condition->rate != NULL};
-  DVI_TRY(fill_points(density, count, function, part));
-  density->count[DVI_DENSITY_QUADRATIC]++;
-  double *datum = DVI_NEW(double, count);
-  if (datum == NULL) return no_memory();
-  const int failed = condition->datum != NULL
-                         ? condition->datum(count, 0, part->x, datum, condition->user)
-                         : 0;
-  const dvi_status status = check_data(density, condition, failed, count, part->x, datum);
-  dvi__release(datum);
-  return status;
-}
-
-dvi_status dvi__density_add_fluxes(dvi_density *density, const dvi_density_terms *terms)
-{
-  for (int i = 0; i < terms->conditions; i++) {
-    const dvi_density_condition *condition = terms->condition + i;
-    if (condition->kind != DVI_FREE || (condition->datum == NULL && condition->robin == 0))
-      continue;
-    if (density->dimension > 1)
-      return dvi__fail(
-          DVI_UNSUPPORTED,
-          "density: a flux is given on \"%s\" of a domain in %d dimensions, where only "
-          "values can be fixed: add it to the density near the boundary",
-          condition->part, density->dimension);
-    DVI_TRY(find_sites(density));
-    for (int c = 0; c < density->components; c++)
-      if (condition->component < 0 || condition->component == c)
-        DVI_TRY(add_flux(density, condition, c));
-  }
-  return DVI_OK;
 }

@@ -2,8 +2,8 @@
  *
  *     S = int dt L,    L(t,q,q') = sum over parts and points of w_k l(t, x_k, B q, B q') + G-terms
  *
- * with B the rows of derivatives at the points, and G the values that the boundary moves. A function
- * of time alone is left out of L. Source: Leok 2004, sec. 5.1. */
+ * with B the rows of derivatives at the points, and G the values that the boundary moves. A
+ * function of time alone is left out of L. Source: Leok 2004, sec. 5.1. */
 #include <string.h>
 
 #include "core/memory.h"

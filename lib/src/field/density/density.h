@@ -8,7 +8,10 @@
 #include "field/space/space.h"
 #include "num/pattern.h"
 
-enum { DVI__MODES_WITH_HESSIAN = 300 /* unknowns of a Fourier field whose Hessian is declared */ };
+enum {
+  DVI__MODES_WITH_HESSIAN = 300, /* unknowns of a Fourier field whose Hessian is declared */
+  DVI__BLOCK_MOST = 64           /* points of a call of a sparse field's callback */
+};
 
 /* A variable at the points, a sparse matrix of the coordinates: z = value.q + fixed + moving.G(t).
  * A column is given by its place in the list of the point's group. */
@@ -49,7 +52,7 @@ typedef struct dvi__density_part {
   int64_t points;
   const double *x, *weight; /* [dimension*points], [points] */
   double *own;              /* x and weight, where they are not the space's */
-  int *site;                /* [points] the function that is 1 there, of a boundary, or NULL */
+  dvi__csr trace;           /* [points x functions] values on a boundary. Else without rows */
   dvi__jet_rows *rows;      /* [variables] NULL for Fourier spaces */
   dvi__point_groups group;
   dvi__slots slots;
@@ -166,6 +169,9 @@ dvi_status dvi__density_check_kinds(dvi_density *density);
 /* Find what conditions fix, and add parts for fluxes. */
 dvi_status dvi__density_fix(dvi_density *density, const dvi_density_terms *terms);
 dvi_status dvi__density_number(dvi_density *density);
+dvi_status dvi__density_check_datum(const dvi_density *density,
+                                    const dvi_density_condition *condition, int failed,
+                                    int64_t count, const double *x, const double *datum);
 dvi_status dvi__density_add_fluxes(dvi_density *density, const dvi_density_terms *terms);
 
 /* Give the values that move [moving], and their first and second derivatives in time. Returns as
@@ -203,8 +209,8 @@ dvi_status dvi__density_make_mass(dvi_density *density);
 dvi_status dvi__density_make_stiffness(dvi_density *density);
 dvi_status dvi__density_find_fastest(dvi_density *density);
 
-/* Make the matrix of the mean coefficients of a Fourier field's kinetic or quadratic parts, and tell
- * whether the coefficients are constant. */
+/* Make the matrix of the mean coefficients of a Fourier field's kinetic or quadratic parts, and
+ * tell whether the coefficients are constant. */
 dvi_status dvi__fourier_matrix(const dvi__integral *integral, dvi__csr *matrix, int *is_constant);
 
 /* Give the number of values of a Hessian. */

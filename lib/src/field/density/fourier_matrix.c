@@ -1,7 +1,9 @@
 /* Matrices of constant coefficients between orthonormal Fourier modes. A derivative of a mode is a
  * number times a mode, so that a row has few entries:
  *
- *     sum_ij c_ab int (D_a phi_i) (D_b phi_j) dx = c_ab f_a(i) f_b(j)  if both give one mode, else 0. */
+ *     sum_ij c_ab int (D_a phi_i) (D_b phi_j) dx = c_ab f_a(i) f_b(j)
+ *
+ * if both give one mode, else 0. */
 #include <math.h>
 #include <string.h>
 

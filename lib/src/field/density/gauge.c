@@ -1,8 +1,8 @@
 /* The two-form of a one-form alpha(q),  Omega_ij = d alpha_j/dq_i - d alpha_i/dq_j,  of fields of
  * first order.
  *
- * With a potential phi in periodic axes, as in phi_x phi_t/2 of Korteweg and de Vries, constants are
- * in the kernel of Omega, and of the gradient of H. One coefficient of phi then stays 0, and
+ * With a potential phi in periodic axes, as in phi_x phi_t/2 of Korteweg and de Vries, constants
+ * are in the kernel of Omega, and of the gradient of H. One coefficient of phi then stays 0, and
  * the others move as before. */
 #include <math.h>
 #include <string.h>
@@ -61,8 +61,8 @@ static double largest(int64_t n, const double *x)
   return most;
 }
 
-/* Tell if constants w of a component are in the kernel of Omega at a state, where alpha is unchanged
- * along w. room has 4 n numbers. */
+/* Tell if constants w of a component are in the kernel of Omega at a state, where alpha is
+ * unchanged along w. room has 4 n numbers. */
 static dvi_status is_in_kernel(const dvi_density *density, int component, const double *constant,
                                double *room, int *answer)
 {

@@ -1,5 +1,5 @@
-/* Tests that parts are of their kinds: quadratic ones have constant second derivatives, and one-forms
- * are linear in rates. */
+/* Tests that parts are of their kinds: quadratic ones have constant second derivatives, and
+ * one-forms are linear in rates. */
 #include <math.h>
 #include <string.h>
 

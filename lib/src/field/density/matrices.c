@@ -1,5 +1,5 @@
-/* The constant matrices of a field: the mass of its kinetic parts, and the stiffness K and the load b
- * of its quadratic parts,
+/* The constant matrices of a field: the mass of its kinetic parts, and the stiffness K and the load
+ * b of its quadratic parts,
  *
  *     L = q'.M q'/2 - q.K q/2 + b.q - rest + ..
  *
@@ -97,9 +97,10 @@ static dvi_status check_diagonal(const dvi_density *density, int may_vanish)
   for (int64_t i = 0; i < density->unknowns; i++) most = fmax(most, diagonal_of(&density->mass, i));
   for (int64_t i = 0; i < density->unknowns; i++)
     if (!(diagonal_of(&density->mass, i) > 1e-14 * most) && !may_vanish)
-      return refuse_component((int)(density->unknown[i] / density->functions),
-                              "give it a kinetic part that is not 0 anywhere, a one-form, or fix "
-                              "its values");
+      return refuse_component(
+          (int)(density->unknown[i] / density->functions),
+          "give it a kinetic part that vanishes nowhere, more quadrature points, or "
+          "fixed values");
   return DVI_OK;
 }
 

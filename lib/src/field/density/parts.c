@@ -223,28 +223,6 @@ static dvi_status split_rows(const dvi_density *density, dvi__density_part *part
   return DVI_OK;
 }
 
-/* A boundary's points are where one function is 1. */
-static dvi_status make_site_rows(const dvi__density_part *part, int64_t functions, dvi__csr *B)
-{
-  DVI_TRY(dvi__csr_allocate(part->points, functions, part->points, B));
-  for (int64_t k = 0; k < part->points; k++) {
-    B->column[k] = part->site[k];
-    B->value[k] = 1;
-    B->start[k + 1] = k + 1;
-  }
-  return DVI_OK;
-}
-
-static dvi_status make_rows(const dvi_density *density, dvi__density_part *part, int a)
-{
-  dvi__csr sites = {0};
-  if (part->site == NULL) return split_rows(density, part, a, &part->transform[a].matrix);
-  DVI_TRY(make_site_rows(part, density->functions, &sites));
-  const dvi_status status = split_rows(density, part, a, &sites);
-  dvi__csr_clear(&sites);
-  return status;
-}
-
 /* ---- groups ---- */
 
 enum { LIST_MOST = 8192 /* coordinates of a point */ };
@@ -336,8 +314,8 @@ static dvi_status make_groups(dvi__density_part *part)
 
 /* ---- ranges ---- */
 
-/* Find the points that coordinates touch: from low[i] on for i and later ones, and below high[i] for
- * i and earlier ones. */
+/* Find the points that coordinates touch: from low[i] on for i and later ones, and below high[i]
+ * for i and earlier ones. */
 static dvi_status find_points_of_ranges(const dvi_density *density, dvi__density_part *part)
 {
   const int64_t n = density->unknowns;
@@ -363,7 +341,9 @@ dvi_status dvi__density_bind(dvi_density *density, dvi__density_part *part)
   if (density->is_fourier) return DVI_OK;
   part->rows = DVI_NEW(dvi__jet_rows, part->given.variables);
   if (part->rows == NULL) return no_memory("rows");
-  for (int a = 0; a < part->given.variables; a++) DVI_TRY(make_rows(density, part, a));
+  for (int a = 0; a < part->given.variables; a++)
+    DVI_TRY(split_rows(density, part, a,
+                       part->trace.rows > 0 ? &part->trace : &part->transform[a].matrix));
   DVI_TRY(make_groups(part));
   return find_points_of_ranges(density, part);
 }
@@ -400,5 +380,5 @@ void dvi__density_part_clear(dvi__density_part *part)
   dvi__release(part->name);
   dvi__release(part->boundary);
   dvi__release(part->own);
-  dvi__release(part->site);
+  dvi__csr_clear(&part->trace);
 }

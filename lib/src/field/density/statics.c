@@ -1,4 +1,5 @@
-/* Static states of a field, where the gradient F(q) of V = -L(q, q' = 0) vanishes, by Newton's method
+/* Static states of a field, where the gradient F(q) of V = -L(q, q' = 0) vanishes, by Newton's
+ * method
  *
  *     H(q) d = F(q),    q <- q - s d,
  *

@@ -8,7 +8,7 @@
 
 #include "field/density/density.h"
 
-enum { BLOCK_MOST = 64, ROOM = 8192 /* numbers of a block */ };
+enum { ROOM = 8192 /* numbers of a block */ };
 
 /* A block of points first to first+count-1, and what the callback says of them. */
 typedef struct block {
@@ -18,8 +18,8 @@ typedef struct block {
   const double *G, *G_rate, *G_second; /* values that move, and their derivatives in time */
   int64_t first;
   int count;
-  double weight[BLOCK_MOST]; /* with the integral's sign */
-  double *room;              /* [ROOM] */
+  double weight[DVI__BLOCK_MOST]; /* with the integral's sign */
+  double *room;                   /* [ROOM] */
   double *x, *z, *l, *l_z, *l_zz;
 } block;
 
@@ -30,7 +30,7 @@ static int points_of_block(const block *b)
   const dvi_density_part *given = &b->part->given;
   const int each = b->integral->density->dimension + 2 * given->variables + 1 + given->pairs;
   const int most = ROOM / each;
-  return most < BLOCK_MOST ? most : BLOCK_MOST;
+  return most < DVI__BLOCK_MOST ? most : DVI__BLOCK_MOST;
 }
 
 static void lay_out(block *b, const dvi__density_sums *s)
@@ -154,7 +154,7 @@ static void scatter_pair(const block *b, int e, const dvi__density_sums *s)
 static int add_rate(const block *b, double *rate)
 {
   const dvi_density_part *given = &b->part->given;
-  double l_t[BLOCK_MOST];
+  double l_t[DVI__BLOCK_MOST];
   if (given->time_derivative != NULL) {
     const int failed = given->time_derivative(b->count, b->at->t, b->x, b->z, l_t, given->user);
     if (failed != 0) return failed;
