@@ -10,8 +10,6 @@
 #include "support/meshes.h"
 #include "support/suite.h"
 
-static const double pi = 3.14159265358979323846;
-
 /* Axes of three kinds: a periodic one of splines, open elements, and one polynomial. */
 static dvi_space *mixed_space(int axes)
 {
@@ -118,42 +116,6 @@ START_TEST(interpolation_joins_nodes_and_least_squares)
     dvi_space *space = mixed_space(axes);
     ck_assert_double_eq_tol(interpolation_error(space, polynomial, &axes), 0, 1e-13);
     dvi_space_destroy(&space);
-  }
-}
-END_TEST
-
-static int product_of_waves(int64_t count, const double *x, double *f, void *user)
-{
-  (void)user;
-  for (int64_t i = 0; i < count; i++) f[i] = sin(2 * pi * x[i] + 0.1) * cos(2 * pi * x[count + i]);
-  return 0;
-}
-
-static double error_on_square(const char *form, int cells)
-{
-  char kind[60];
-  (void)snprintf(kind, sizeof kind, form, cells);
-  dvi_space *space = space_on_box(kind, 2, 1, 1);
-  const double error = interpolation_error(space, product_of_waves, NULL);
-  dvi_space_destroy(&space);
-  return error;
-}
-
-START_TEST(interpolation_on_a_square_has_the_order_k_plus_1)
-{
-  const int cells[] = {8, 12, 16, 24};
-  for (int i = 0; i < 3; i++) {
-    const double refined = log((double)cells[i + 1] / cells[i]);
-    for (int k = 1; k <= 3; k++)
-      for (int f = 0; f < 2; f++) {
-        char form[60];
-        (void)snprintf(form, sizeof form, "%s:degree=%d,points=6,cells=%%d",
-                       f == 0 ? "fem" : "spline", k);
-        const double order =
-            log(error_on_square(form, cells[i]) / error_on_square(form, cells[i + 1])) / refined;
-        ck_assert_msg(fabs(order - (k + 1)) < 0.1 * (k + 1), "%s, %d cells: order %g", form,
-                      cells[i], order);
-      }
   }
 }
 END_TEST
@@ -491,7 +453,6 @@ SUITE(space_boxes)
   tcase_add_test(tests, the_first_axis_runs_slowest);
   tcase_add_test(tests, the_transposed_operator_is_the_adjoint);
   tcase_add_test(tests, interpolation_joins_nodes_and_least_squares);
-  tcase_add_test(tests, interpolation_on_a_square_has_the_order_k_plus_1);
   tcase_add_test(tests, largest_eigenvalues_of_axes_add);
   tcase_add_test(tests, sides_of_a_box_have_their_functions);
   tcase_add_test(tests, a_shared_space_lives_until_its_last_owner);

@@ -93,46 +93,6 @@ START_TEST(the_largest_eigenvalues_of_splines)
 }
 END_TEST
 
-/* The error of the lowest eigenvalue of a string with fixed ends, 1 on [0, pi]. */
-static double eigenvalue_error(const char *form, int degree, int cells)
-{
-  double lambda[MOST];
-  dvi_space *space = space_on_line(kind_of(form, degree, cells).text, 0, pi, 0);
-  (void)space_eigenvalues_inside(space, "boundary", lambda);
-  dvi_space_destroy(&space);
-  return fabs(lambda[0] - 1);
-}
-
-/* Splines with an open end have a few coarse cells' worth of error of higher order, too. */
-static void check_eigenvalue_order(const char *form, int degree, const int *cells, double tolerance)
-{
-  for (int i = 0; i < 3; i++) {
-    const double order = log(eigenvalue_error(form, degree, cells[i]) /
-                             eigenvalue_error(form, degree, cells[i + 1])) /
-                         log((double)cells[i + 1] / cells[i]);
-    ck_assert_msg(fabs(order - 2 * degree) < tolerance * degree,
-                  "%s: degree %d, %d cells: order %g", form, degree, cells[i], order);
-  }
-}
-
-/* The errors go down to 1e-11. Roundings are 1e-14 and more. */
-START_TEST(eigenvalues_have_the_order_2k)
-{
-  const int cells[4][4] = {{8, 16, 32, 64}, {6, 12, 24, 48}, {4, 6, 8, 12}, {2, 3, 4, 5}};
-  for (int k = 1; k <= 4; k++) {
-    check_eigenvalue_order(consistent, k, cells[k - 1], 0.1);
-    check_eigenvalue_order(lumped, k, cells[k - 1], 0.1);
-  }
-}
-END_TEST
-
-START_TEST(eigenvalues_of_splines_have_the_order_2p)
-{
-  const int cells[4][4] = {{8, 16, 32, 64}, {8, 16, 24, 32}, {8, 12, 16, 20}, {8, 10, 12, 14}};
-  for (int p = 1; p <= 4; p++) check_eigenvalue_order(splines, p, cells[p - 1], 0.2);
-}
-END_TEST
-
 /* The largest one of a single polynomial with fixed ends grows as the fourth power of the degree.
  * */
 START_TEST(the_largest_eigenvalue_of_one_legendre_element)
@@ -154,45 +114,6 @@ static int wave(int64_t count, const double *x, double *f, void *user)
   for (int64_t i = 0; i < count; i++) f[i] = sin(*(double *)user * x[i] + 0.3);
   return 0;
 }
-
-/* The error in L2 on [0, pi], by a rule that is finer than the space's own. The waves
- * are so short that errors stay above roundings, and so long that the order shows, which splines
- * need at the ends. */
-static double error_of(const char *form, int degree, int cells)
-{
-  double number = form != splines ? 8 : degree < 6 ? 2 : 3;
-  enum { PLACES = 4000 };
-  const int value[1] = {0};
-  double *x = malloc(PLACES * sizeof *x), *u = malloc(PLACES * sizeof *u),
-         *exact = malloc(PLACES * sizeof *exact), U[MOST], sum = 0;
-  dvi_space *space = space_on_line(kind_of(form, degree, cells).text, 0, pi, 0);
-  ck_assert_int_eq(dvi_space_interpolate(space, wave, &number, U), DVI_OK);
-  for (int i = 0; i < PLACES; i++) x[i] = pi * (i + 0.5) / PLACES;
-  ck_assert_int_eq(dvi_space_evaluate(space, value, U, PLACES, x, u), DVI_OK);
-  (void)wave(PLACES, x, exact, &number);
-  for (int i = 0; i < PLACES; i++) sum += (u[i] - exact[i]) * (u[i] - exact[i]);
-  free(x);
-  free(u);
-  free(exact);
-  dvi_space_destroy(&space);
-  return sqrt(sum * pi / PLACES);
-}
-
-START_TEST(interpolation_has_the_order_k_plus_1)
-{
-  const char *const forms[] = {consistent, lumped, splines};
-  const int cells[] = {16, 24, 32, 48};
-  for (int f = 0; f < 3; f++)
-    for (int k = 1; k <= 8; k++)
-      for (int i = 0; i < 3; i++) {
-        const double order = log(error_of(forms[f], k, cells[i]) /
-                                 error_of(forms[f], k, cells[i + 1])) /
-                             log((double)cells[i + 1] / cells[i]);
-        ck_assert_msg(fabs(order - (k + 1)) < 0.1 * (k + 1), "%s: degree %d, %d cells: order %g",
-                      forms[f], k, cells[i], order);
-      }
-}
-END_TEST
 
 /* (x - 1/5)^degree, and its derivatives. */
 typedef struct power {
@@ -493,10 +414,7 @@ SUITE(space_lines)
   tcase_add_test(tests, the_largest_eigenvalues_of_consistent_elements);
   tcase_add_test(tests, the_largest_eigenvalues_of_lumped_elements);
   tcase_add_test(tests, the_largest_eigenvalues_of_splines);
-  tcase_add_test(tests, eigenvalues_have_the_order_2k);
-  tcase_add_test(tests, eigenvalues_of_splines_have_the_order_2p);
   tcase_add_test(tests, the_largest_eigenvalue_of_one_legendre_element);
-  tcase_add_test(tests, interpolation_has_the_order_k_plus_1);
   tcase_add_test(tests, derivatives_of_polynomials_are_exact_on_unequal_cells);
   tcase_add_test(tests, one_polynomial_has_all_of_its_derivatives);
   tcase_add_test(tests, one_polynomial_of_degree_256_is_accurate);

@@ -89,7 +89,8 @@ static dvi__fourier_image differentiate(const dvi__line *line, int order, int64_
   if (i == 0) return (dvi__fourier_image){0, order == 0 ? 1 : 0};
   const int is_sine = i % 2 == 0;
   const int64_t partner = is_sine ? i - 1 : i + 1;
-  const double wave = 2 * pi * (double)((i + 1) / 2) / (line->to - line->from);
+  const int64_t k = (i + 1) / 2;
+  const double wave = 2 * pi * (double)k / (line->to - line->from);
   double factor = (is_sine ? sign_of_sine : sign_of_cosine)[order % 4];
   for (int r = 0; r < order; r++) factor *= wave;
   return (dvi__fourier_image){order % 2 == 0 ? i : partner, factor};
