@@ -213,6 +213,86 @@ START_TEST(walls_may_move)
 }
 END_TEST
 
+/* du/dn of sin(t - x). */
+static int moving_flux(int64_t count, double t, const double *x, double *datum, void *user)
+{
+  (void)user;
+  for (int64_t i = 0; i < count; i++) datum[i] = (x[i] < .5 ? 1 : -1) * cos(t - x[i]);
+  return 0;
+}
+
+START_TEST(fluxes_may_move)
+{
+  static const double weight[][2] = {{0, 0}, {1. / 6, 1. / 6}, {1. / 6, .25}};
+  double before = 0;
+  for (int cells = 20; cells <= 160; cells *= 2) {
+    lattice w = {.cells = cells,
+                 .to = 1,
+                 .fixed = 1,
+                 .space = weight[_i][0],
+                 .time = weight[_i][1],
+                 .step = .8 / cells};
+    lattice_terms(&w);
+    w.condition.kind = DVI_FREE;
+    w.condition.datum = moving_flux;
+    w.condition.rate = moving_wall_rate; /* it tells that the datum moves */
+    dvi_march *march = NULL;
+    ck_assert_int_eq(dvi_multisymplectic_create(&w.terms, &march), DVI_OK);
+    lattice_start(march, &w, sine_wave, NULL);
+    advance(march, 2);
+    const double error = lattice_distance(march, &w, sine_wave, NULL);
+    if (cells > 40) ck_assert_double_eq_tol(log2(before / error), 2, 0.2);
+    before = error;
+    dvi_march_destroy(&march);
+  }
+}
+END_TEST
+
+/* cos .8x cos .8t cos .8y on a square has the flux -a u with a = .8 tan .8 where x = 1 or y = 1. */
+static double sprung(double t, const double *x, const void *of)
+{
+  (void)of;
+  return cos(.8 * x[0]) * cos(.8 * x[1]) * cos(.8 * sqrt(2) * t);
+}
+
+START_TEST(springs_hold_the_boundary)
+{
+  double before = 0;
+  for (int cells = 16; cells <= 64; cells *= 2) {
+    lattice w = {.axes = 2,
+                 .cells = cells,
+                 .to = 1,
+                 .fixed = 1,
+                 .space = 1. / 6,
+                 .time = 1. / 6,
+                 .step = .5 / cells};
+    lattice_terms(&w);
+    dvi_density_condition ends[2] = {w.condition, w.condition};
+    ends[0].part = "right", ends[1].part = "top";
+    for (int k = 0; k < 2; k++) ends[k].kind = DVI_FREE, ends[k].robin = .8 * tan(.8);
+    w.terms.condition = ends;
+    w.terms.conditions = 2;
+    dvi_march *march = NULL;
+    dvi_law law[DVI_LAWS_MAX];
+    int count;
+    double energy, later;
+    ck_assert_int_eq(dvi_multisymplectic_create(&w.terms, &march), DVI_OK);
+    lattice_start(march, &w, sprung, NULL);
+    ck_assert_int_eq(dvi_march_observe(march, 0, &energy), DVI_OK);
+    advance(march, 2);
+    ck_assert_int_eq(dvi_march_observe(march, 0, &later), DVI_OK);
+    ck_assert_double_eq_tol(energy, later, 1e-13); /* roundings */
+    const double error = lattice_distance(march, &w, sprung, NULL);
+    if (before > 0) ck_assert_double_eq_tol(log2(before / error), 2, 0.2);
+    before = error;
+    dvi_march_destroy(&march);
+    ck_assert_int_eq(dvi_multisymplectic_laws(&w.terms, NULL, 10, 3, law, &count), DVI_OK);
+    ck_assert_double_lt(law[0].error, 1e-14);
+    ck_assert_double_lt(law[1].error, 1e-13);
+  }
+}
+END_TEST
+
 /* Unequal cells, which a free end and a wall close, still have order 2 where they change slowly. */
 static double quarter_wave(double t, const double *x, const void *of)
 {
@@ -434,8 +514,8 @@ START_TEST(bad_conditions_and_symmetries_are_refused)
   refuse(&w.terms, DVI_BAD_ARGUMENT, "no part \"front\"");
   lattice_terms(&w), w.condition.component = 1;
   refuse(&w.terms, DVI_BAD_ARGUMENT, "component 1");
-  lattice_terms(&w), w.condition.kind = DVI_FREE, w.condition.robin = 1;
-  refuse(&w.terms, DVI_UNSUPPORTED, "has a flux");
+  lattice_terms(&w), w.condition.kind = DVI_FREE, w.condition.robin = (double)NAN;
+  refuse(&w.terms, DVI_NOT_FINITE, "robin = nan");
   w.cells = 2, lattice_terms(&w);
   w.terms.condition = (dvi_density_condition[]){w.condition, w.condition};
   w.terms.conditions = -1;
@@ -543,6 +623,8 @@ SUITE(lattice_marches)
   tcase_add_loop_test(tests, samples_are_continuous_at_levels, 0, KINDS);
   tcase_add_test(tests, damaged_files_and_those_of_others_are_refused);
   tcase_add_loop_test(tests, walls_may_move, 0, 4);
+  tcase_add_loop_test(tests, fluxes_may_move, 0, 3);
+  tcase_add_test(tests, springs_hold_the_boundary);
   tcase_add_loop_test(tests, cells_may_be_unequal, 0, 2);
   tcase_add_loop_test(tests, densities_may_be_nonlinear_in_the_rates, 0, 3);
   tcase_add_test(tests, methods_are_read_with_their_weights);

@@ -168,11 +168,10 @@ static dvi_status make_symmetries(const dvi_multisymplectic_terms *terms, dvi__l
 
 static int is_held(const dvi__lattice *lattice, int d, int end)
 {
-  const dvi__lattice_axis *a = &lattice->axis[d];
   for (int64_t i = 0; i < lattice->size; i++) {
-    double x[DVI_AXES_MAX];
-    dvi__lattice_vertex(lattice, i % lattice->vertices, x);
-    if (x[d] == a->node[end * a->cells] && lattice->unknown[i] >= 0) return 0;
+    int index[DVI_AXES_MAX];
+    dvi__lattice_vertex_index(lattice, i % lattice->vertices, index);
+    if (index[d] == end * lattice->axis[d].cells && lattice->unknown[i] >= 0) return 0;
   }
   return 1;
 }
@@ -234,6 +233,8 @@ static void clear_condition(dvi__lattice_condition *condition)
   dvi__release(condition->place);
   dvi__release(condition->x);
   dvi__release(condition->datum);
+  dvi__release(condition->weight);
+  dvi__release(condition->shape);
 }
 
 void dvi__lattice_clear(dvi__lattice *lattice)

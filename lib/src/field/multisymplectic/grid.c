@@ -130,6 +130,11 @@ void dvi__lattice_cell(const dvi__lattice *lattice, int64_t cell, int *index)
   split(lattice, cell, 1, index);
 }
 
+void dvi__lattice_vertex_index(const dvi__lattice *lattice, int64_t vertex, int *index)
+{
+  split(lattice, vertex, 0, index);
+}
+
 void dvi__lattice_vertex(const dvi__lattice *lattice, int64_t vertex, double *x)
 {
   int index[DVI_AXES_MAX];
