@@ -317,8 +317,12 @@ START_TEST(cells_may_be_unequal)
     w.terms.conditions = 1;
     dvi_march *march = NULL;
     ck_assert_int_eq(dvi_multisymplectic_create(&w.terms, &march), DVI_OK);
+    double energy, later;
     lattice_start(march, &w, quarter_wave, NULL);
+    ck_assert_int_eq(dvi_march_observe(march, 0, &energy), DVI_OK);
     advance(march, 10);
+    ck_assert_int_eq(dvi_march_observe(march, 0, &later), DVI_OK);
+    ck_assert_double_eq_tol(energy, later, 1e-13); /* roundings */
     const double error = lattice_distance(march, &w, quarter_wave, NULL);
     if (cells > 40) ck_assert_double_eq_tol(log2(before / error), 2, 0.2);
     before = error;
