@@ -24,7 +24,7 @@ typedef struct cell_matrices {
 
 static dvi_status allocate(const dvi__lattice *lattice, cell_matrices *m)
 {
-  const size_t n = (size_t)(lattice->corners * lattice->components),
+  const size_t n = (size_t)lattice->corners * (size_t)lattice->components,
                components = (size_t)lattice->components;
   m->n = (int)n;
   m->K = DVI_NEW(double, 2 * n * n);

@@ -8,13 +8,9 @@
 
 /* ---- parts of the boundary ---- */
 
-/* An end of an axis. */
-static const char *const side_name[DVI_AXES_MAX][2] = {
-    {"left", "right"}, {"bottom", "top"}, {"back", "front"}};
-
-int dvi__lattice_is_part(const char *part, int axis, int end)
+int dvi__lattice_is_part(const char *part, const dvi__lattice_axis *axis, int end)
 {
-  return strcmp(part, "boundary") == 0 || strcmp(part, side_name[axis][end]) == 0;
+  return strcmp(part, "boundary") == 0 || strcmp(part, axis->side[end]) == 0;
 }
 
 static int is_on(const dvi__lattice *lattice, int64_t vertex, const char *part)
@@ -24,7 +20,7 @@ static int is_on(const dvi__lattice *lattice, int64_t vertex, const char *part)
   for (int d = 0; d < lattice->axes; d++) {
     const dvi__lattice_axis *a = &lattice->axis[d];
     for (int end = 0; end < 2 && !a->is_periodic; end++)
-      if (index[d] == end * a->cells && dvi__lattice_is_part(part, d, end)) return 1;
+      if (index[d] == end * a->cells && dvi__lattice_is_part(part, a, end)) return 1;
   }
   return 0;
 }
@@ -58,8 +54,8 @@ int dvi__lattice_is_of(const dvi_density_condition *given, int component)
   return given->component < 0 || given->component == component;
 }
 
-/* Take the places of fixed values that no earlier condition has: count them, or keep them too. Taken
- * ones are -2. */
+/* Take the places of fixed values that no earlier condition has: count them, or keep them too.
+ * Taken ones are -2. */
 static int64_t take_places(const dvi__lattice *lattice, const dvi_density_condition *given,
                            dvi__lattice_condition *kept)
 {

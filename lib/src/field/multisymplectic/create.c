@@ -156,9 +156,10 @@ static dvi_status make_symmetries(const dvi_multisymplectic_terms *terms, dvi__l
     return dvi__fail(DVI_NO_MEMORY, "multisymplectic: no memory for symmetries");
   char *next = lattice->names;
   for (int i = 0; i < terms->symmetries; i++) {
-    strcpy(next, terms->symmetry[i].name);
+    const size_t size = strlen(terms->symmetry[i].name) + 1;
+    memcpy(next, terms->symmetry[i].name, size);
     lattice->symmetry[i].name = next;
-    next += strlen(next) + 1;
+    next += size;
   }
   lattice->symmetries = terms->symmetries;
   return DVI_OK;

@@ -1,7 +1,7 @@
 /* Fluxes through free parts of the boundary.
  *
- * They add g u - a u^2/2 to the action of the faces of cells there, by the same quadrature as in the
- * cells:  sum over points of faces and points in time of  |face| dt/points (g u - a u^2/2). */
+ * They add g u - a u^2/2 to the action of the faces of cells there, with the quadrature of cells:
+ *     sum over points of faces and points in time of  |face| dt/points (g u - a u^2/2). */
 #include "core/status.h"
 #include "field/multisymplectic/lattice.h"
 
@@ -32,7 +32,7 @@ static void keep_point(const dvi__lattice *lattice, const int *cell, int64_t fir
   }
 }
 
-/* Take the points of a cell's faces. Of its points, those that are first on the axis are one each. */
+/* Take the points of a cell's faces, one each for those of the cell that are first on the axis. */
 static int64_t take_cell(const dvi__lattice *lattice, const dvi_density_condition *given,
                          int64_t first, int64_t count, dvi__lattice_condition *kept)
 {
@@ -41,7 +41,7 @@ static int64_t take_cell(const dvi__lattice *lattice, const dvi_density_conditio
   for (int d = 0; d < lattice->axes; d++)
     for (int end = 0; end < 2 && !lattice->axis[d].is_periodic; end++) {
       if (cell[d] != end * (lattice->axis[d].cells - 1) ||
-          !dvi__lattice_is_part(given->part, d, end))
+          !dvi__lattice_is_part(given->part, &lattice->axis[d], end))
         continue;
       for (int q = 0; q < lattice->points; q++) {
         if (lattice->at[q][d] != 0) continue;

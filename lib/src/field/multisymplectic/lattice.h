@@ -20,6 +20,7 @@ typedef struct dvi__two_points {
 /* An axis. Vertices are the nodes but for the last one of a periodic axis. */
 typedef struct dvi__lattice_axis {
   char name[32], momentum[48]; /* and of what is observed */
+  const char *side[2];         /* parts of the boundary */
   int cells, vertices, is_periodic;
   double *node; /* [cells+1] */
   double weight;
@@ -42,8 +43,8 @@ typedef struct dvi__lattice_part {
   dvi__two_points time;
 } dvi__lattice_part;
 
-/* A condition: fixed values at vertices, or a flux through faces of cells at the boundary, at points
- * with their corners. */
+/* A condition: fixed values at vertices, or a flux through faces of cells at the boundary, at
+ * points with their corners. */
 typedef struct dvi__lattice_condition {
   dvi_density_condition declared;
   int64_t count;
@@ -101,7 +102,7 @@ dvi_status dvi__lattice_make_conditions(const dvi_multisymplectic_terms *terms,
                                         dvi__lattice *lattice);
 
 /* Tell if a part's name is that of an end of an axis, and a condition that of a component. */
-int dvi__lattice_is_part(const char *part, int axis, int end);
+int dvi__lattice_is_part(const char *part, const dvi__lattice_axis *axis, int end);
 int dvi__lattice_is_of(const dvi_density_condition *given, int component);
 
 /* Count the points of a flux, and keep them unless `kept` is NULL. */
