@@ -89,11 +89,12 @@ const char *dvi_space_axis(const dvi_space *space, int d);
 /** Return the number of functions. 0 for NULL. */
 int64_t dvi_space_functions(const dvi_space *space);
 
-/** Return the highest derivative along axis d that is square integrable. 0 for NULL. */
+/** Return the highest derivative along axis d that is square integrable, at most 16. 0 for NULL. */
 int dvi_space_smoothness(const dvi_space *space, int d);
 
 /** Return the number of quadrature points. 0 for NULL. The points, axis by axis [dimension*points],
- *  and the weights [points] are the space's. Each pointer may be NULL. */
+ *  and the weights [points] are the space's. Each pointer may be NULL. Where the nodes are the
+ *  points, a node between two cells is two points, because derivatives differ on its sides. */
 int64_t dvi_space_points(const dvi_space *space, const double **x, const double **weight);
 
 /** Return the functions that do not vanish on a part of the boundary, ascending, and their number.
@@ -123,13 +124,14 @@ dvi_status dvi_space_evaluate(const dvi_space *space, const int *order, const do
                               int64_t count, const double *x, double *values);
 
 /** Give coefficients [functions] of a function f: those that interpolate at the nodes of fem,
- *  legendre and chebyshev, and otherwise those nearest to f at the quadrature points in the
+ *  legendre, chebyshev and msfem, and otherwise those nearest to f at the quadrature points in the
  *  norm of the quadrature.
  *
  *  @param f  gets points x [dimension*count] axis by axis, and gives f [count]. It returns 0, or
  *            another number for a failure
  *  @retval DVI_CALLBACK_FAILED  f failed
  *  @retval DVI_NOT_FINITE       f is not finite. dvi_last_error() names the point
+ *  @retval DVI_SINGULAR         there are too few points for the nearest coefficients
  *  @retval DVI_NO_MEMORY        there is no memory */
 dvi_status dvi_space_interpolate(const dvi_space *space,
                                  int (*f)(int64_t count, const double *x, double *f, void *user),

@@ -31,13 +31,21 @@ dvi_space *space_on_box(const char *kind, int axes, double length, int periodic)
   return space;
 }
 
+dvi_space *space_on_mesh(const char *kind, const dvi_mesh *mesh)
+{
+  const dvi_space_options options = {.size = sizeof options, .kind = kind, .mesh = mesh};
+  dvi_space *space = NULL;
+  ck_assert_msg(dvi_space_create(&options, &space) == DVI_OK, "%s", dvi_last_error());
+  return space;
+}
+
 static void add_derivative(const dvi_space *space, int axis, int order, double *form)
 {
   const int n = (int)dvi_space_functions(space);
   const double *weight;
   const int64_t points = dvi_space_points(space, NULL, &weight);
-  double *U = calloc((size_t)n, sizeof *U), *B = malloc((size_t)(n * points) * sizeof *B);
-  int orders[DVI_AXES_MAX] = {0};
+  double *U = calloc((size_t)n, sizeof *U), *B = calloc((size_t)(n * points) + 1, sizeof *B);
+  int orders[DVI_AXES_MAX] = {0}, *at = calloc((size_t)n, sizeof *at);
   orders[axis] = order;
   for (int i = 0; i < n; i++) {
     U[i] = 1;
@@ -45,12 +53,17 @@ static void add_derivative(const dvi_space *space, int axis, int order, double *
                   dvi_last_error());
     U[i] = 0;
   }
-  for (int i = 0; i < n; i++)
-    for (int j = 0; j < n; j++)
-      for (int64_t k = 0; k < points; k++)
-        form[i * n + j] += weight[k] * B[i * points + k] * B[j * points + k];
+  for (int64_t k = 0; k < points; k++) {
+    int count = 0;
+    for (int i = 0; i < n; i++)
+      if (B[i * points + k] != 0) at[count++] = i;
+    for (int i = 0; i < count; i++)
+      for (int j = 0; j < count; j++)
+        form[at[i] * n + at[j]] += weight[k] * B[at[i] * points + k] * B[at[j] * points + k];
+  }
   free(U);
   free(B);
+  free(at);
 }
 
 space_forms forms_of_space(const dvi_space *space)
@@ -74,7 +87,7 @@ void space_eigenvalues(space_forms *forms, double *lambda)
 {
   const int type = 1, size = 64 * forms->n;
   int info = -1;
-  double *work = malloc((size_t)size * sizeof *work);
+  double *work = calloc((size_t)size + 1, sizeof *work);
   dsygv_(&type, "N", "L", &forms->n, forms->stiffness, &forms->n, forms->mass, &forms->n, lambda,
          work, &size, &info, 1, 1);
   ck_assert_int_eq(info, 0);
@@ -87,7 +100,7 @@ int space_eigenvalues_inside(const dvi_space *space, const char *part, double *l
   int64_t fixed;
   const int *function = dvi_space_boundary(space, part, &fixed);
   const int n = forms.n;
-  int *inner = malloc((size_t)n * sizeof *inner), count = 0;
+  int *inner = calloc((size_t)n + 1, sizeof *inner), count = 0;
   for (int i = 0, at = 0; i < n; i++)
     if (at < fixed && function[at] == i)
       at++;

@@ -9,6 +9,9 @@ dvi_space *space_on_line(const char *kind, double from, double to, int periodic)
 /* Create a space of one kind on a box [0,length]^axes. */
 dvi_space *space_on_box(const char *kind, int axes, double length, int periodic);
 
+/* Create a space on a mesh. */
+dvi_space *space_on_mesh(const char *kind, const dvi_mesh *mesh);
+
 /* The mass and the stiffness [n*n], full. */
 typedef struct space_forms {
   int n;

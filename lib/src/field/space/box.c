@@ -63,8 +63,8 @@ dvi_status dvi__box_place(dvi_space *space)
 
 /* ---- the boundary ---- */
 
-static const char *const sides[DVI_AXES_MAX][2] = {
-    {"left", "right"}, {"bottom", "top"}, {"back", "front"}};
+static const char *const sides[2 * DVI_AXES_MAX] = {"left", "right", "bottom",
+                                                    "top",  "back",  "front"};
 
 /* Tell if a function does not vanish at side 2 d or 2 d + 1, or at any one if `side` is -1. */
 static int is_at(const dvi_space *space, int64_t function, int side)
@@ -97,9 +97,9 @@ static dvi_status find_boundary(dvi_space *space)
   space->part = DVI_NEW(dvi__space_part, 2 * DVI_AXES_MAX + 1);
   if (space->part == NULL) return dvi__fail(DVI_NO_MEMORY, "space: no memory for a boundary");
   DVI_TRY(add_part(space, "boundary", -1));
-  for (int d = 0; d < space->dimension; d++)
-    for (int end = 0; end < 2 && !space->line[d].periodic; end++)
-      DVI_TRY(add_part(space, sides[d][end], 2 * d + end));
+  for (int side = 0; side < 2 * DVI_AXES_MAX; side++)
+    if (side / 2 < space->dimension && !space->line[side / 2].periodic)
+      DVI_TRY(add_part(space, sides[side], side));
   return DVI_OK;
 }
 
@@ -158,8 +158,8 @@ static dvi_status multiply_axes(const dvi__csr *factor, int axes, dvi__csr *prod
 static dvi_status box_matrix(const dvi_space *space, const int *order, dvi__csr *made)
 {
   dvi__csr factor[DVI_AXES_MAX] = {{0}};
-  dvi_status status = DVI_OK;
-  for (int d = 0; d < space->dimension && status == DVI_OK; d++)
+  dvi_status status = dvi__line_operator(&space->line[0], order[0], &factor[0]);
+  for (int d = 1; d < space->dimension && status == DVI_OK; d++)
     status = dvi__line_operator(&space->line[d], order[d], &factor[d]);
   if (status == DVI_OK && space->dimension == 1) {
     *made = factor[0];
@@ -193,18 +193,29 @@ static dvi_status box_row(const dvi_space *space, const int *order, const double
 
 /* ---- description ---- */
 
+static void explain_line(const dvi__line *line, dvi__note *note)
+{
+  dvi__note_add(note, "axis %s, %g to %g%s: %s", line->name, line->from, line->to,
+                line->periodic ? ", periodic" : "", line->kind->form.name);
+  if (line->degree > 0) dvi__note_add(note, ", degree %d", line->degree);
+  dvi__note_add(note, ", %lld %s: %lld functions, ", (long long)line->cells,
+                line->cells == 1 ? "cell" : "cells", (long long)line->functions);
+  line->kind->explain(line, note);
+  dvi__note_add(note, "\n");
+}
+
+void dvi__explain_product(const dvi_space *space, dvi__note *note)
+{
+  if (space->dimension > 1)
+    dvi__note_add(note, "product of %d axes: %lld functions, %lld points\n", space->dimension,
+                  (long long)space->functions, (long long)space->points);
+}
+
 static void box_explain(const dvi_space *space, dvi__note *note)
 {
-  for (int d = 0; d < space->dimension; d++) {
-    const dvi__line *line = &space->line[d];
-    dvi__note_add(note, "axis %s, %g to %g%s: %s", line->name, line->from, line->to,
-                  line->periodic ? ", periodic" : "", line->kind->form.name);
-    dvi__note_add(note, ", degree %d, %lld %s: %lld functions, ", line->locals - 1,
-                  (long long)line->cells, line->cells == 1 ? "cell" : "cells",
-                  (long long)line->functions);
-    line->kind->explain(line, note);
-    dvi__note_add(note, "\n");
-  }
+  for (int d = 0; d < space->dimension; d++) explain_line(&space->line[d], note);
+  dvi__explain_product(space, note);
+  if (space->is_nodal) dvi__note_add(note, "the mass is diagonal\n");
 }
 
 const dvi__domain dvi__box = {

@@ -155,11 +155,12 @@ static dvi_status sample_product(const fit *f, int axes, const dvi__sampled *sam
   const int64_t all = product_of(f, 0, axes, 1);
   double *x = DVI_NEW(double, axes *all);
   *values = DVI_NEW(double, all);
-  dvi_status status = DVI_OK;
-  if (x == NULL || *values == NULL)
-    status = dvi__fail(DVI_NO_MEMORY, "space: no memory for %lld samples", (long long)all);
-  if (status == DVI_OK) lay_out_samples(f, axes, x);
-  if (status == DVI_OK) status = dvi__space_sample(axes, sampled, all, x, *values);
+  if (x == NULL || *values == NULL) {
+    dvi__release(x);
+    return dvi__fail(DVI_NO_MEMORY, "space: no memory for %lld samples", (long long)all);
+  }
+  lay_out_samples(f, axes, x);
+  const dvi_status status = dvi__space_sample(axes, sampled, all, x, *values);
   dvi__release(x);
   return status;
 }

@@ -61,6 +61,7 @@ typedef struct dvi__line {
   int value[DVI__SPACE_KEYS]; /* of the options */
   int64_t cells;
   double *node; /* [cells+1] ends of the cells */
+  int degree;   /* of polynomials, for dvi_space_explain. 0 for other functions */
   int locals, stride, smoothness;
   int64_t functions;
   int cell_points;
@@ -81,7 +82,7 @@ struct dvi__kind {
   void (*local)(const dvi__line *line, int order, int64_t cell, double s, double *value);
   int is_affine;              /* the local functions, in s, are the same in each cell */
   void (*destroy)(void *own); /* NULL if there is nothing to release */
-  /* Describe the quadrature behind "axis x: fem, degree 2, 100 cells: 201 functions, ". */
+  /* Describe the quadrature behind "axis x, 0 to 1: fem, degree 2, 9 cells: 19 functions, ". */
   void (*explain)(const dvi__line *line, dvi__note *note);
   /* The domain of boxes with so many axes or more, all of this kind. NULL for products of axes. */
   const struct dvi__domain *domain;
@@ -169,7 +170,10 @@ struct dvi_space {
 /* For `create` of products of axes: count functions and points, and place the points. */
 dvi_status dvi__box_place(dvi_space *space);
 
-/* Check the counts of a space. DVI_BAD_SIZE. */
+/* Describe how many functions and points a product of several axes has. */
+void dvi__explain_product(const dvi_space *space, dvi__note *note);
+
+/* Check the counts of a space, or of one of its axes before memory is taken. DVI_BAD_SIZE. */
 dvi_status dvi__space_check_sizes(double functions, double points);
 
 /* Check the order of a derivative. DVI_UNSUPPORTED. */

@@ -6,6 +6,7 @@
  * s may be a node. dvi/basis.h has values and first derivatives of lower degrees only. */
 #include "field/space/lagrange.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "core/memory.h"
@@ -55,32 +56,51 @@ static long double coefficient_of_product(int order, const long double *a, const
   return sum;
 }
 
-void dvi__lagrange_evaluate(const dvi__lagrange *basis, int order, double s, double *value)
+/* Compute the Taylor coefficients of all functions at s, without their weights. */
+static void expand(const dvi__lagrange *basis, int order, long double s, long double *coefficient)
 {
   const int last = basis->count - 1;
   long double before[DVI__LOCALS_MOST][DVI__ORDER_MOST + 1], behind[DVI__ORDER_MOST + 1] = {1};
-  long double factorial = 1;
-  int node = -1;
   memset(before[0], 0, sizeof before[0]);
   before[0][0] = 1;
-  for (int i = 2; i <= order; i++) factorial *= (long double)i;
-  for (int k = 0; k <= last; k++)
-    if (basis->mark[k] == (long double)s) node = k;
   for (int k = 0; k < last; k++)
-    multiply_series(order, before[k], (long double)s - basis->mark[k], before[k + 1]);
+    multiply_series(order, before[k], s - basis->mark[k], before[k + 1]);
   for (int k = last; k >= 0; k--) {
-    value[k] = (double)(factorial * basis->weight[k] *
-                        coefficient_of_product(order, before[k], behind));
-    multiply_series(order, behind, (long double)s - basis->mark[k], behind);
+    coefficient[k] = coefficient_of_product(order, before[k], behind);
+    multiply_series(order, behind, s - basis->mark[k], behind);
   }
-  /* Exact ones make the values at nodes coefficients. */
-  if (order == 0 && node >= 0) value[node] = 1;
+}
+
+/* Replace the largest value by what makes the sum of derivatives zero. */
+static void balance(int count, long double *value)
+{
+  long double sum = 0;
+  int largest = 0;
+  for (int k = 1; k < count; k++)
+    if (fabsl(value[k]) > fabsl(value[largest])) largest = k;
+  for (int k = 0; k < count; k++) sum += k == largest ? 0 : value[k];
+  value[largest] = -sum;
+}
+
+void dvi__lagrange_evaluate(const dvi__lagrange *basis, int order, double s, double *value)
+{
+  long double exact[DVI__LOCALS_MOST], factorial = 1;
+  for (int i = 2; i <= order; i++) factorial *= (long double)i;
+  expand(basis, order, (long double)s, exact);
+  for (int k = 0; k < basis->count; k++) exact[k] *= factorial * basis->weight[k];
+  if (order > 0) balance(basis->count, exact);
+  for (int k = 0; k < basis->count; k++) {
+    value[k] = (double)exact[k];
+    /* Exact ones make the values at nodes coefficients. */
+    if (order == 0 && basis->mark[k] == (long double)s) value[k] = 1;
+  }
 }
 
 /* ---- lines ---- */
 
 dvi_status dvi__line_interpolate(int degree, const long double *mark, dvi__line *line)
 {
+  line->degree = degree;
   line->locals = degree + 1;
   line->stride = degree;
   line->functions = line->cells * degree + (line->periodic ? 0 : 1);

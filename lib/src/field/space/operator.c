@@ -6,9 +6,8 @@
 
 static dvi_status check_order(const dvi_space *space, const int *order)
 {
-  static const char *const axis[DVI_AXES_MAX] = {"x", "y", "z"};
   for (int d = 0; d < space->dimension; d++) {
-    const char *name = space->mesh != NULL ? axis[d] : space->line[d].name;
+    const char *name = dvi_space_axis(space, d);
     if (order[d] < 0)
       return dvi__fail(DVI_BAD_ARGUMENT, "space: a derivative of order %d along %s is asked",
                        order[d], name);

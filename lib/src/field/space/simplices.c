@@ -83,7 +83,7 @@ static void fill_row(const dvi_space *space, int64_t cell, const double *l, int 
 {
   const simplices *own = space->own;
   const int *function = own->function + cell * own->locals;
-  double value[FUNCTIONS_MOST];
+  double value[FUNCTIONS_MOST] = {0};
   cell_frame frame;
   if (d >= 0) frame_cell(space->mesh, cell, &frame);
   local_functions(own, l, &frame, d, value);
@@ -296,8 +296,8 @@ static dvi_status sum_rows(const dvi_space *space, const int *order, const doubl
                            const double *point, const int *cell, const double *l, double *values)
 {
   const int d = axis_of(space, order), corners = space->dimension + 1;
-  int column[FUNCTIONS_MOST];
-  double value[FUNCTIONS_MOST];
+  int column[FUNCTIONS_MOST] = {0};
+  double value[FUNCTIONS_MOST] = {0};
   for (int64_t i = 0; i < count; i++) {
     if (cell[i] < 0) return dvi__space_outside(space, point + i * space->dimension);
     fill_row(space, cell[i], l + i * corners, d, column, value);
