@@ -33,7 +33,7 @@ dvi_status dvi_density_lift_rate(const dvi_density *density, double t, const dou
     rate[i] = number >= 0 ? v[number] : number < -1 ? G_rate[-2 - number] : 0;
   }
   dvi__release(G_rate);
-  return dvi__density_refuse(density, failed, "the rate of a value that moves");
+  return dvi__density_refuse(failed, "the rate of a value that moves");
 }
 
 static void take(const dvi_density *density, const double *U, double *q)
