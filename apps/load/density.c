@@ -135,36 +135,68 @@ int density_write(const problem *scene, const char *path, int count, const doubl
   return code;
 }
 
-static int write_views(const sampled *s, const dvi_mesh *mesh, const char *path)
+/* ---- views ---- */
+
+/* The values behind views. */
+struct density_values {
+  sampled s;
+  double *x;
+};
+
+void density_views_clear(density_views *views)
 {
-  const int series = s->count * s->components;
-  dvi_view *view = calloc((size_t)series, sizeof *view);
-  if (view == NULL) return out_of_memory();
-  for (int k = 0; k < series; k++)
-    view[k] = (dvi_view){.name = s->name[k], .values = s->value + k * s->points, .components = 1};
-  const dvi_status status = dvi_mesh_write(mesh, path, series, view);
-  free(view);
-  return status == DVI_OK ? DONE : library_error(status);
+  if (views->values != NULL) {
+    sampled_clear(&views->values->s);
+    free(views->values->x);
+  }
+  free(views->values);
+  free(views->view);
+  *views = (density_views){0};
+}
+
+/* Take the vertices axis by axis. */
+static double *vertices_of(const dvi_mesh *mesh)
+{
+  const int axes = dvi_mesh_space(mesh);
+  const int64_t vertices = dvi_mesh_count(mesh, 0);
+  double *x = calloc((size_t)vertices * (size_t)axes, sizeof *x);
+  for (int64_t v = 0; v < vertices && x != NULL; v++)
+    for (int d = 0; d < axes; d++) x[d * vertices + v] = dvi_mesh_points(mesh)[v * axes + d];
+  return x;
+}
+
+int density_views_make(const problem *scene, int count, const double *U, density_views *views)
+{
+  dvi_scene *own = scene->scene;
+  const dvi_mesh *mesh = dvi_scene_mesh(own);
+  const int series = count * dvi_density_components(density_of(scene));
+  *views = (density_views){.count = series};
+  views->view = calloc((size_t)series, sizeof *views->view);
+  views->values = calloc(1, sizeof *views->values);
+  if (views->view == NULL || views->values == NULL) return out_of_memory();
+  sampled *s = &views->values->s;
+  views->values->x = vertices_of(mesh);
+  if (views->values->x == NULL) return out_of_memory();
+  int code = sampled_make(scene, count, dvi_mesh_count(mesh, 0), views->values->x, s);
+  if (code == DONE) code = sample(s, true, U);
+  for (int k = 0; k < series && code == DONE; k++)
+    views->view[k] = (dvi_view){
+        .name = s->name[k], .values = s->value + k * s->points, .components = 1};
+  return code;
 }
 
 int density_view(const problem *scene, const char *path, int count, const double *U)
 {
   dvi_scene *own = scene->scene;
-  const dvi_mesh *mesh = dvi_scene_mesh(own);
-  if (mesh == NULL)
+  density_views views;
+  if (dvi_scene_mesh(own) == NULL)
     return usage_error("%s: a .vtu file needs a mesh, and %s has a domain; --csv has the values",
                        path, scene->name);
-  const int axes = dvi_mesh_space(mesh);
-  const int64_t vertices = dvi_mesh_count(mesh, 0);
-  double *x = calloc((size_t)vertices * (size_t)axes, sizeof *x);
-  sampled s;
-  if (x == NULL) return out_of_memory();
-  for (int64_t v = 0; v < vertices; v++)
-    for (int d = 0; d < axes; d++) x[d * vertices + v] = dvi_mesh_points(mesh)[v * axes + d];
-  int code = sampled_make(scene, count, vertices, x, &s);
-  if (code == DONE) code = sample(&s, true, U);
-  if (code == DONE) code = write_views(&s, mesh, path);
-  sampled_clear(&s);
-  free(x);
+  int code = density_views_make(scene, count, U, &views);
+  if (code == DONE) {
+    const dvi_status status = dvi_mesh_write(dvi_scene_mesh(own), path, views.count, views.view);
+    code = status == DVI_OK ? DONE : library_error(status);
+  }
+  density_views_clear(&views);
   return code;
 }

@@ -99,10 +99,22 @@ static bool describe_scene(dvi_scene *scene, problem *made)
   return copy_parameters(scene, made);
 }
 
+/* Tell if a scene is a density without rates. */
+static bool is_static(const dvi_scene *scene)
+{
+  dvi_scene_facts facts;
+  dvi_scene_facts_of(scene, &facts);
+  return dvi_scene_density(scene) != NULL && strcmp(facts.form, "static") == 0;
+}
+
 int scene_complete(problem *made)
 {
   dvi_scene *scene = made->scene;
   if (scene == NULL || made->system != NULL) return DONE;
+  if (is_static(scene))
+    return usage_error("the density of %s has no rates, so that nothing moves; dvi solve finds its "
+                       "static state",
+                       made->name);
   /* nothing here changes the system */
   made->system = (dvi_system *)dvi_scene_system(scene);
   if (made->system == NULL) return library_error(DVI_BAD_ARGUMENT);

@@ -132,7 +132,7 @@ static bool is_periodic(const dvi__tree *tree)
 /* Find the axis that a part bounds. Returns -1 if there is none. */
 static int axis_of_part(const dvi_scene *scene, const char *name)
 {
-  for (int d = 0; d < scene->density->jets.dimension; d++)
+  for (int d = 0; d < DVI_AXES_MAX && d < scene->density->jets.dimension; d++)
     if (strcmp(side[d][0], name) == 0 || strcmp(side[d][1], name) == 0) return d;
   return -1;
 }

@@ -177,13 +177,12 @@ static bool list_fields(dvi_scene *scene, const dvi__tree *section)
 /* Write names for the components of a field, psi_re and psi_im, or w_1, w_2. */
 static bool name_components(dvi_scene *scene, const dvi__declared_field *field)
 {
-  static const char *const part[] = {"re", "im"};
   for (int k = 0; k < field->components; k++) {
     const size_t size = strlen(field->name) + 24;
     char *label = dvi__arena_take(&scene->arena, size, 1);
     if (label == NULL) return dvi__scene_no_memory(scene);
     if (field->is_complex)
-      (void)dvi__print(label, size, "%s_%s", field->name, part[k]);
+      (void)dvi__print(label, size, "%s_%s", field->name, k == 0 ? "re" : "im");
     else if (field->is_vector)
       (void)dvi__print(label, size, "%s_%d", field->name, k + 1);
     else
@@ -214,7 +213,7 @@ static bool name_place(dvi_scene *scene)
   struct dvi__scene_density *s = scene->density;
   const int dimension = s->jets.dimension;
   scene->n = scene->nv = scene->velocities = dvi__jet_count(&s->jets);
-  scene->coordinate = dvi__arena_take(&scene->arena, (size_t)(dimension + s->fields),
+  scene->coordinate = dvi__arena_take(&scene->arena, (size_t)dimension + (size_t)s->fields,
                                       sizeof *scene->coordinate);
   scene->zeros = dvi__arena_take(&scene->arena, 2 * (size_t)scene->n, sizeof *scene->zeros);
   s->component = dvi__arena_take(&scene->arena, (size_t)s->jets.components, sizeof *s->component);

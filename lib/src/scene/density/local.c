@@ -222,7 +222,7 @@ static int evaluate(const dvi__local *local, int count, double t, const double *
 static void copy_points(int rows, int64_t all, int64_t from, int count, const double *of,
                         double *part)
 {
-  for (int k = 0; k < rows; k++)
+  for (int k = 0; k < rows && of != NULL; k++)
     memcpy(part + (ptrdiff_t)k * count, of + k * all + from, (size_t)count * sizeof *part);
 }
 

@@ -4,8 +4,8 @@
  *
  *     l = hbar (b a' - a b') - hbar^2/(2 m) (|grad a|^2 + |grad b|^2) - V |psi|^2 - beta/2 |psi|^4
  *
- * is the real part of i hbar conj(psi) psi', less the energy. Its equation of motion is
- * i hbar psi' = -hbar^2/(2 m) laplace psi + (V + beta |psi|^2) psi (docs/fields/schroedinger.md). */
+ * is the real part of i hbar conj(psi) psi', less the energy. Its equation of motion is i hbar psi'
+ * = -hbar^2/(2 m) laplace psi + (V + beta |psi|^2) psi (docs/fields/schroedinger.md). */
 #include "expr/graph_make.h"
 #include "scene/density/scene_density.h"
 #include "scene/sections/sections.h"
