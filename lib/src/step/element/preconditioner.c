@@ -12,7 +12,8 @@
  * fixed_point.h. The inverse decides how fast they are solved, and no more. At the end g_j gets the
  * change of the linear forces with the last change of Z. What is left of it is the other forces'.
  *
- * The inverses are kept from step to step as long as h stays. Coordinates with equal k/m share
+ * The inverses are kept from step to step as long as h stays, for a composition those of all of its
+ * lengths. Coordinates with equal k/m share
  * one, and those with k <= 0 have none. Source: Hairer, Lubich and Wanner 2006, sec. VIII.6. */
 #include "step/element/action_struct.h"
 
@@ -33,10 +34,14 @@ struct dvi__preconditioner {
   int *place;        /* [n] place of each coordinate's k/m among these, or -1 */
   double *B;         /* [r*r] by rows */
   double *row_sum;   /* [r] of B */
-  double *inverse;   /* [inverses*r*lanes] by columns */
-  double *matrix;    /* [r*2r] work of an inverse, by rows */
-  double *rest;      /* [n*r] Phi(Z) - Z */
-  double *moved;     /* [n*lanes] its product with the inverse */
+  /* inverses [inverses*r*lanes] by columns of some h, one after the other; their h, 0 if not made;
+   * the one to be replaced next, and the one in use */
+  int lengths, oldest;
+  double *inverse, *length;
+  const double *in_use;
+  double *matrix; /* [r*2r] work of an inverse, by rows */
+  double *rest;   /* [n*r] Phi(Z) - Z */
+  double *moved;  /* [n*lanes] its product with the inverse */
 };
 
 int dvi__action_has_preconditioner(const dvi__action *a)
@@ -147,18 +152,39 @@ static dvi_status no_memory(const dvi__action *a)
   return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d nodes in %d dimensions", a->r, a->n);
 }
 
+static size_t inverse_size(const dvi__action *a)
+{
+  return (size_t)a->r * (size_t)a->fixed_point.lanes;
+}
+
+static size_t size_of_length(const dvi__action *a)
+{
+  return (size_t)a->preconditioner->inverses * inverse_size(a);
+}
+
+dvi_status dvi__action_keep_lengths(dvi__action *a, int count)
+{
+  struct dvi__preconditioner *p = a->preconditioner;
+  if (p == NULL) return DVI_OK;
+  dvi__release(p->inverse);
+  dvi__release(p->length);
+  p->inverse = DVI_NEW(double, (size_t)count *size_of_length(a));
+  p->length = DVI_NEW(double, count);
+  p->lengths = count;
+  return p->inverse && p->length ? DVI_OK : no_memory(a);
+}
+
 static dvi_status allocate_numbers(dvi__action *a)
 {
   struct dvi__preconditioner *p = a->preconditioner;
   const size_t n = (size_t)a->n, r = (size_t)a->r, lanes = (size_t)a->fixed_point.lanes;
   p->B = DVI_NEW(double, r *r);
   p->row_sum = DVI_NEW(double, r);
-  p->inverse = DVI_NEW(double, (size_t)p->inverses *r *lanes);
   p->matrix = DVI_NEW(double, 2 * r * r);
   p->rest = DVI_NEW(double, n *r);
   p->moved = DVI_NEW(double, n *lanes);
-  return p->B && p->row_sum && p->inverse && p->matrix && p->rest && p->moved ? DVI_OK
-                                                                              : no_memory(a);
+  if (!p->B || !p->row_sum || !p->matrix || !p->rest || !p->moved) return no_memory(a);
+  return dvi__action_keep_lengths(a, 1);
 }
 
 dvi_status dvi__action_prepare_preconditioner(dvi__action *a)
@@ -185,8 +211,8 @@ void dvi__action_clear_preconditioner(dvi__action *a)
 {
   struct dvi__preconditioner *p = a->preconditioner;
   if (p == NULL) return;
-  double *const owned[] = {p->stiffness, p->ratio,  p->B,    p->row_sum,
-                           p->inverse,   p->matrix, p->rest, p->moved};
+  double *const owned[] = {p->stiffness, p->ratio,  p->B,    p->row_sum, p->inverse,
+                           p->length,    p->matrix, p->rest, p->moved};
   for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) dvi__release(owned[i]);
   dvi__release(p->place);
   dvi__release(p);
@@ -251,16 +277,25 @@ static void invert(const dvi__action *a, double z, double *inverse)
       inverse[j * a->fixed_point.lanes + i] = regular ? p->matrix[i * 2 * r + r + j] : i == j;
 }
 
-static size_t inverse_size(const dvi__action *a)
+static void make_inverses(const dvi__action *a, double *inverse)
 {
-  return (size_t)a->r * (size_t)a->fixed_point.lanes;
+  const struct dvi__preconditioner *p = a->preconditioner;
+  for (size_t k = 0; k < (size_t)p->inverses; k++)
+    invert(a, a->h * a->h * p->ratio[k], inverse + k * inverse_size(a));
 }
 
 void dvi__preconditioner_set_step(dvi__action *a)
 {
   struct dvi__preconditioner *p = a->preconditioner;
-  for (size_t k = 0; k < (size_t)p->inverses; k++)
-    invert(a, a->h * a->h * p->ratio[k], p->inverse + k * inverse_size(a));
+  int k = 0;
+  while (k < p->lengths && p->length[k] != a->h) k++;
+  if (k == p->lengths) {
+    k = p->oldest;
+    p->oldest = k + 1 < p->lengths ? k + 1 : 0;
+    p->length[k] = a->h;
+    make_inverses(a, p->inverse + (size_t)k * size_of_length(a));
+  }
+  p->in_use = p->inverse + (size_t)k * size_of_length(a);
 }
 
 /* ---- iterations ---- */
@@ -286,7 +321,7 @@ static void multiply_by_inverses(const dvi__action *a, double *product)
       pad_rows(a, next - i, from, to);
     else
       dvi__lanes_product(next - i, a->r, a->fixed_point.lanes, a->fixed_point.lanes,
-                         p->inverse + (size_t)p->place[i] * inverse_size(a), from, to);
+                         p->in_use + (size_t)p->place[i] * inverse_size(a), from, to);
   }
 }
 
