@@ -24,7 +24,10 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "num/simd/lanes.h"
+#include "num/simd/members.h"
+#include "num/simd/wide.h"
 #include "step/element/fixed_point.h"
+#include "step/element/members.h"
 #include "system/term/term.h"
 
 struct dvi__preconditioner {
@@ -387,4 +390,113 @@ void dvi__preconditioner_other_forces(const dvi__action *a, double *g)
   for (size_t i = 0; i < (size_t)a->n; i++)
     for (size_t j = 0; j < r && p->place[i] >= 0; j++)
       g[i * r + j] += a->h * a->weight[j] * (p->stiffness[i] * a->fixed_point.Q[i * r + j]);
+}
+
+/* ---- members side by side ---- */
+
+static size_t members_at(const dvi__action_members *m, size_t i, size_t j)
+{
+  return (i * (size_t)m->action->r + j) * (size_t)m->width;
+}
+
+/* Find `rest` from sums of forces, for Z or what stands in its place. */
+WIDE static void find_rest(const dvi__action_members *m, const double *sums,
+                           const double *restrict before, double *restrict rest)
+{
+  const dvi__action *a = m->action;
+  const size_t width = (size_t)m->width;
+  for (size_t i = 0; i < (size_t)a->n; i++)
+    for (size_t j = 0; j < (size_t)a->r; j++) {
+      const size_t at = members_at(m, i, j);
+      const double c = a->fixed_point.node[j], factor = a->fixed_point.factor[i];
+      const double *start = m->start + i * width, *low = m->low + i * width;
+      for (size_t k = 0; k < width; k++)
+        rest[at + k] = (start[k] * c + (factor * sums[at + k] + low[k] * c)) - before[at + k];
+    }
+}
+
+static void multiply_members(const dvi__action_members *m, double *product)
+{
+  const dvi__action *a = m->action;
+  const struct dvi__preconditioner *p = a->preconditioner;
+  const size_t row = (size_t)a->r * (size_t)m->width;
+  for (size_t i = 0; i < (size_t)a->n; i++)
+    if (p->place[i] < 0)
+      memcpy(product + i * row, m->rest + i * row, row * sizeof(double));
+    else
+      dvi__members_product(1, a->r, a->fixed_point.lanes, a->r,
+                           p->in_use + (size_t)p->place[i] * inverse_size(a), m->width,
+                           m->rest + i * row, product + i * row);
+}
+
+/* Z holds the pull of K at q0 in the meantime. */
+void dvi__preconditioner_begin_members(dvi__action_members *m)
+{
+  const dvi__action *a = m->action;
+  const struct dvi__preconditioner *p = a->preconditioner;
+  const size_t n = (size_t)a->n, r = (size_t)a->r, width = (size_t)m->width;
+  memcpy(m->moved, m->Z, n * r * width * sizeof(double));
+  for (size_t i = 0; i < n; i++) {
+    const double strength = a->fixed_point.factor[i] * a->h * fmax(p->stiffness[i], 0);
+    for (size_t j = 0; j < r; j++)
+      for (size_t k = 0; k < width; k++)
+        m->Z[members_at(m, i, j) + k] = strength * m->origin[i * width + k] * p->row_sum[j];
+  }
+  find_rest(m, m->moved, m->Z, m->rest);
+  multiply_members(m, m->Z);
+  for (size_t i = 0; i < n; i++)
+    for (size_t j = 0; j < r; j++)
+      for (size_t k = 0; k < width; k++)
+        m->Q[members_at(m, i, j) + k] = m->origin[i * width + k] + m->Z[members_at(m, i, j) + k];
+}
+
+/* Move stage j of coordinate i of all members. A change that is NaN counts as infinite. */
+WIDE static void move_members(const dvi__action_members *m, size_t i, size_t j, double stiffness,
+                              double *restrict change, double *restrict largest)
+{
+  const size_t width = (size_t)m->width, at = members_at(m, i, j);
+  const double weight = m->action->fixed_point.weight[j], *origin = m->origin + i * width,
+               *moved = m->moved + at;
+  double *restrict Z = m->Z + at, *restrict Q = m->Q + at, *restrict g = m->force + at;
+  for (size_t k = 0; k < width; k++) {
+    Z[k] += moved[k];
+    Q[k] = origin[k] + Z[k];
+    g[k] += weight * (stiffness * moved[k]);
+    const double by = fabs(moved[k]), now = fabs(Z[k]);
+    change[k] = by <= change[k] ? change[k] : by == by ? by : HUGE_VAL;
+    largest[k] = now > largest[k] ? now : largest[k];
+  }
+}
+
+void dvi__preconditioner_iterate_members(dvi__action_members *m)
+{
+  const dvi__action *a = m->action;
+  const struct dvi__preconditioner *p = a->preconditioner;
+  const size_t n = (size_t)a->n, r = (size_t)a->r, width = (size_t)m->width;
+  for (size_t i = 0; i < n; i++)
+    for (size_t j = 0; j < r; j++)
+      for (size_t k = 0; k < width; k++)
+        m->force[members_at(m, i, j) + k] *= a->fixed_point.weight[j];
+  dvi__members_product(a->n, a->r, a->fixed_point.lanes, a->r, a->fixed_point.matrix, m->width,
+                       m->force, m->moved);
+  find_rest(m, m->moved, m->Z, m->rest);
+  multiply_members(m, m->moved);
+  memset(m->change, 0, width * sizeof(double));
+  memset(m->largest, 0, width * sizeof(double));
+  for (size_t i = 0; i < n; i++)
+    for (size_t j = 0; j < r; j++)
+      move_members(m, i, j, p->place[i] >= 0 ? p->stiffness[i] : 0, m->change, m->largest);
+}
+
+void dvi__preconditioner_other_forces_of_members(dvi__action_members *m)
+{
+  const dvi__action *a = m->action;
+  const struct dvi__preconditioner *p = a->preconditioner;
+  const size_t r = (size_t)a->r, count = (size_t)m->count;
+  for (size_t i = 0; i < (size_t)a->n; i++)
+    for (size_t j = 0; j < r && p->place[i] >= 0; j++)
+      for (size_t k = 0; k < count; k++) {
+        const size_t at = (i * r + j) * count + k;
+        m->forces[at] += a->h * a->weight[j] * (p->stiffness[i] * m->kept_Q[at]);
+      }
 }
