@@ -32,7 +32,7 @@ typedef struct dvi_jet {
  *  with a minus sign. */
 typedef enum dvi_density_kind {
   DVI_DENSITY_KINETIC,   /**< a quadratic form of rates whose coefficients depend on x alone */
-  DVI_DENSITY_QUADRATIC, /**< at most quadratic, without rates. Second derivatives depend on x alone */
+  DVI_DENSITY_QUADRATIC, /**< at most quadratic, without rates. Only linear terms depend on t */
   DVI_DENSITY_POTENTIAL, /**< any function without rates */
   DVI_DENSITY_ONE_FORM,  /**< linear in rates, without t. The field is of first order then */
   DVI_DENSITY_GENERAL    /**< any function */

@@ -124,8 +124,8 @@ dvi_status dvi_space_evaluate(const dvi_space *space, const int *order, const do
                               int64_t count, const double *x, double *values);
 
 /** Give coefficients [functions] of a function f: those that interpolate at the nodes of fem,
- *  legendre and chebyshev, and otherwise those nearest to f at the quadrature points in the
- *  norm of the quadrature. In a box each axis has its own sort.
+ *  legendre, chebyshev and msfem, and otherwise those nearest to f at the quadrature points in the
+ *  norm of the quadrature.
  *
  *  @param f  gets points x [dimension*count] axis by axis, and gives f [count]. It returns 0, or
  *            another number for a failure

@@ -331,6 +331,78 @@ START_TEST(solitons_have_known_invariants)
 }
 END_TEST
 
+/* int u is no coordinate, and int u^2/2 is exact for M > 3 K. */
+START_TEST(momentum_of_solitons_is_exact_without_aliasing)
+{
+  density_field field = make_kdv("fourier:modes=40,points=128");
+  double start = 5, before[2], after[2];
+  set_density(&field, soliton, NULL, &start);
+  ck_assert_int_eq(dvi_system_momentum(field.system, 0, field.q, field.q, field.p), DVI_OK);
+  ck_assert_int_eq(dvi_system_invariants(field.system, 0, field.q, field.p, before), DVI_OK);
+  run_density(&field, "vprk:nodes=1", 0, 0.01, 50);
+  ck_assert_int_eq(dvi_system_invariants(field.system, 0.5, field.q, field.p, after), DVI_OK);
+  ck_assert_double_eq_tol(after[1], before[1], 1e-13);
+  end_density(&field);
+}
+END_TEST
+
+/* A full Hessian of 361 coordinates is not declared. The midpoint rule iterates with that of the
+ * quadratic part, and has the same motion as with all Hessians (289 coordinates). */
+START_TEST(large_fields_go_without_full_hessians)
+{
+  static const char *const spaces[] = {"fourier:modes=8,points=24", "fourier:modes=9,points=24"};
+  const double x[2] = {0.3, 0.4};
+  double u[2];
+  for (int i = 0; i < 2; i++) {
+    const dvi_density_part parts[] = {kinetic_part, elastic_part_2d, sine_gordon_part};
+    density_field field = make_field(spaces[i], 2, parts, 3);
+    dvi_system_terms terms;
+    ck_assert_int_eq(dvi_density_system_terms(field.density, &terms), DVI_OK);
+    ck_assert_int_eq(terms.potentials[1].without_hessian, i);
+    ck_assert_int_eq(terms.potentials[1].hessian == NULL, i);
+    set_density(&field, start_2d, rate_2d, NULL);
+    run_density(&field, "midpoint", 0, 0.05, 10);
+    u[i] = density_at(&field, 0.5, x);
+    end_density(&field);
+  }
+  ck_assert_double_eq_tol(u[0], u[1], 1e-7);
+}
+END_TEST
+
+/* Static states of the pendula's chain under a constant torque: sin u = 1/2. */
+static int tilted(int count, double t, const double *x, const double *z, double *l, double *l_z,
+                  double *l_zz, void *user)
+{
+  (void)t, (void)x, (void)user;
+  for (int k = 0; k < count; k++) {
+    if (l != NULL) l[k] = cos(z[k]) + 0.5 * z[k];
+    if (l_z != NULL) l_z[k] = 0.5 - sin(z[k]);
+    if (l_zz != NULL) l_zz[k] = -cos(z[k]);
+  }
+  return 0;
+}
+
+START_TEST(static_states_are_found_by_full_hessians)
+{
+  static const char *const spaces[] = {"fourier:modes=8", "fourier:modes=9"};
+  for (int i = 0; i < 2; i++) {
+    dvi_density_part parts[] = {kinetic_part, i == 0 ? elastic_part : elastic_part_2d,
+                                sine_gordon_part};
+    parts[2].density = tilted;
+    density_field field = make_field(spaces[i], 1 + i, parts, 3);
+    const double x[2] = {0.3, 0.4};
+    set_density(&field, i == 0 ? bump : start_2d, NULL, NULL);
+    memset(field.q, 0, (size_t)field.n * sizeof(double));
+    ck_assert_msg(dvi_density_solve(field.density, field.U, NULL) == DVI_OK, "%s",
+                  dvi_last_error());
+    ck_assert_int_eq(dvi_density_project(field.density, field.U, NULL, field.q, NULL, NULL),
+                     DVI_OK);
+    ck_assert_double_eq_tol(density_at(&field, 0, x), pi / 6, 1e-12);
+    end_density(&field);
+  }
+}
+END_TEST
+
 SUITE(density_fourier)
 {
   tcase_add_test(tests, callbacks_agree_with_differences);
@@ -342,4 +414,7 @@ SUITE(density_fourier)
   tcase_add_test(tests, solitons_have_the_errors_of_the_poisson_form);
   tcase_add_test(tests, kdv_agrees_with_differences);
   tcase_add_test(tests, solitons_have_known_invariants);
+  tcase_add_test(tests, momentum_of_solitons_is_exact_without_aliasing);
+  tcase_add_test(tests, large_fields_go_without_full_hessians);
+  tcase_add_test(tests, static_states_are_found_by_full_hessians);
 }

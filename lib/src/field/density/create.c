@@ -93,6 +93,11 @@ static dvi_status make_integrals(dvi_density *density)
   const int is_general = density->count[DVI_DENSITY_GENERAL] > 0;
   density->potential = DVI_NEW(dvi__integral, density->parts + 1);
   if (density->potential == NULL) return dvi__fail(DVI_NO_MEMORY, "density: no memory");
+  if (is_general && density->is_fourier && density->unknowns > DVI__MODES_WITH_HESSIAN)
+    return dvi__fail(DVI_UNSUPPORTED,
+                     "density: general parts have full Hessians on fourier, which are for at most "
+                     "%d coordinates, not %lld: take kind=spline or fem",
+                     (int)DVI__MODES_WITH_HESSIAN, (long long)density->unknowns);
   begin(density, &density->kinetic);
   begin(density, &density->lagrangian);
   if (is_general)

@@ -127,8 +127,10 @@ static dvi_status fill(row *r, const dvi__integral *integral, double *const *mea
   for (int64_t i = 0; i < n; i++) {
     sum_row(r, integral, i, mean);
     const int64_t at = matrix->start[i];
-    memcpy(matrix->column + at, r->column, (size_t)r->count * sizeof *r->column);
-    for (int e = 0; e < r->count; e++) matrix->value[at + e] = integral->sign * r->value[e];
+    for (int e = 0; e < r->count; e++) {
+      matrix->column[at + e] = r->column[e];
+      matrix->value[at + e] = integral->sign * r->value[e];
+    }
     matrix->start[i + 1] = at + r->count;
   }
   return DVI_OK;

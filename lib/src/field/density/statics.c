@@ -13,7 +13,7 @@
 #include "field/algebra/definite.h"
 #include "field/density/density.h"
 
-enum { ITERATIONS = 60, HALVINGS = 12 };
+enum { ITERATIONS = 60, HALVINGS = 12, FULL_MOST = 2000 /* coordinates of a full Hessian */ };
 
 /* A step that is no larger beside q ends the iteration, if |F| falls no more. */
 static const double small_step = 1e-9;
@@ -57,11 +57,11 @@ static dvi_status find_gradient(const dvi_density *density, const double *q, dou
 static dvi_status make_part(const dvi__integral *integral, const double *q, dvi__csr *part)
 {
   const int64_t n = integral->density->unknowns;
-  if (!integral->has_hessian)
+  if (integral->density->is_fourier && n > FULL_MOST)
     return dvi__fail(DVI_UNSUPPORTED,
                      "density: part '%s' has a full Hessian on fourier, which is for at most %d "
                      "coordinates, not %lld: take kind=spline or fem",
-                     integral->part[0]->name, (int)DVI__MODES_WITH_HESSIAN, (long long)n);
+                     integral->part[0]->name, (int)FULL_MOST, (long long)n);
   if (integral->density->is_fourier) {
     DVI_TRY(dvi__csr_allocate(n, n, n * n, part));
     for (int64_t i = 0; i <= n; i++) part->start[i] = i * n;

@@ -294,6 +294,7 @@ static dvi_potential part_term(const dvi_density *d, dvi__integral *integral)
                          .gradient_range = integral->has_ranges ? part_gradient_range : NULL,
                          .reach = integral->has_ranges ? integral->reach : 0,
                          .hessian = integral->has_hessian ? part_hessian : NULL,
+                         .without_hessian = !integral->has_hessian,
                          .qq = view(&integral->patterns.qq),
                          .rate = !is_autonomous(d) && integral->has_rate ? part_rate : NULL,
                          .user = integral};

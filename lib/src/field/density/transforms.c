@@ -21,9 +21,8 @@ typedef struct spread {
 
 static int64_t room_of_part(const dvi_density *density, const dvi__density_part *part)
 {
-  const int64_t pairs = density->unknowns <= DVI__MODES_WITH_HESSIAN ? part->given.pairs : 0;
-  return density->functions + (2 * part->given.variables + 1 + pairs) * part->points +
-         dvi__operator_work(density->space);
+  const int64_t each = 2 * part->given.variables + 1 + part->given.pairs;
+  return density->functions + each * part->points + dvi__operator_work(density->space);
 }
 
 int64_t dvi__density_room(const dvi_density *density)
