@@ -98,6 +98,9 @@ START_TEST(axes_and_spaces_are_as_described)
                 DVI_BAD_OPTION, ":2:8:", "fen");
   refused("domain: {x: [0, 1]}\nspace: fourier:modes=3\nfields: {u: scalar}\n" WAVE,
           ":2:8:", "fourier is periodic, and the axis x is not");
+  refused("domain: {x: [0, 1]}\nspace: msfem:cells=2,fine=8\nfields: {u: scalar}\n"
+          "density: u'^2/2 - u^2\n",
+          ":4:10:", "msfem has the coefficient a of the summand -a*d(u,x)^2/2");
   refused("mesh: {generator: disk}\nspace: {x: 'fem:degree=1'}\nfields: {u: scalar}\n" WAVE,
           ":2:8:", "a mesh has no axes");
   refused("mesh: {generator: icosphere}\nfields: {u: scalar}\n" WAVE,
