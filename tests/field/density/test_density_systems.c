@@ -148,8 +148,10 @@ START_TEST(fixed_ends_hold_a_line)
                   dvi_last_error());
     ck_assert_int_eq(dvi_density_project(field.density, field.U, NULL, field.q, NULL, NULL),
                      DVI_OK);
-    for (double x = -1; x <= 2; x += 0.25)
+    for (int k = 0; k <= 12; k++) {
+      const double x = -1 + 0.25 * k;
       ck_assert_double_eq_tol(density_at(&field, 0, &x), 2 * x + 1, 1e-12);
+    }
     end_density(&field);
   }
 }
@@ -317,7 +319,7 @@ START_TEST(lift_undoes_project)
   U[0] = -1;
   ck_assert_int_eq(dvi_density_project(field.density, U, NULL, field.q, NULL, NULL), DVI_OK);
   ck_assert_int_eq(dvi_density_lift(field.density, 0, field.q, back), DVI_OK);
-  ck_assert(memcmp(U, back, sizeof U) == 0);
+  for (int i = 0; i < 9; i++) ck_assert_double_eq(U[i], back[i]);
   end_density(&field);
 }
 END_TEST

@@ -351,6 +351,13 @@ START_TEST(options_that_are_wrong_are_refused)
          DVI_BAD_ARGUMENT, "space: axes 0 and 2 have the same name, x");
   refuse(&(dvi_space_options){.size = SIZE, .kind = "fem:cells=30000", .axis = axis, .axes = 2},
          DVI_BAD_SIZE, "space: 9e+08 functions and 3.6e+09 points asked, 2147483647 possible");
+  refuse(
+      &(dvi_space_options){.size = SIZE, .kind = "fem:cells=1073741824", .axis = axis, .axes = 1},
+      DVI_BAD_SIZE, "space: 1.07e+09 functions and 2.15e+09 points asked");
+  refuse(
+      &(dvi_space_options){
+          .size = SIZE, .kind = "spline:cells=1000000000", .axis = axis, .axes = 1},
+      DVI_BAD_SIZE, "space: 1e+09 functions and 4e+09 points asked");
   ck_assert_int_eq(dvi_space_create(NULL, NULL), DVI_BAD_ARGUMENT);
   check_words("space: the place for the space is NULL");
   dvi_mesh_destroy(&mesh);

@@ -23,7 +23,7 @@ typedef struct dvi__jet_rows {
   dvi__csr moving; /* [points x moving]. Without rows for 0 */
 } dvi__jet_rows;
 
-/* Points in a row whose variables depend on the same coordinates, as those of a cell. */
+/* Points whose variables depend on the same coordinates, as those of a cell. */
 typedef struct dvi__point_groups {
   int *of; /* [points] */
   int64_t groups;
@@ -225,7 +225,7 @@ dvi_status dvi__density_make_one_form(dvi_density *density);
 dvi_status dvi__density_make_terms(dvi_density *density, int translations);
 
 /* Refuse a failure of a part at create, or a number that is not finite. */
-dvi_status dvi__density_refuse(const dvi_density *density, int failed, const char *where);
+dvi_status dvi__density_refuse(int failed, const char *where);
 
 /* Make the Hessian of all parts without rates at q, with a minus sign. */
 dvi_status dvi__density_hessian(const dvi_density *density, const double *q, dvi__csr *hessian);

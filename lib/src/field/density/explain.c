@@ -11,7 +11,8 @@ static void write_coordinates(dvi__note *p, const dvi_density *d)
   int64_t gauges = 0;
   for (int c = 0; c < d->components; c++) gauges += d->gauge[c];
   if (rest > gauges) dvi__note_add(p, ", %lld fixed values", (long long)(rest - gauges));
-  if (gauges > 0) dvi__note_add(p, ", %lld constants left out", (long long)gauges);
+  if (gauges > 0)
+    dvi__note_add(p, ", %lld constant%s left out", (long long)gauges, gauges == 1 ? "" : "s");
   dvi__note_add(p, "\n");
 }
 

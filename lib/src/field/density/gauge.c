@@ -51,7 +51,7 @@ static dvi_status differentiate(const dvi_density *density, const double *q, con
   const dvi__density_sums gradient = {.q = y}, alpha = {.v = y};
   const int failed = dvi__integral_evaluate(&density->one_form, &at,
                                             w != NULL ? &gradient : &alpha);
-  return dvi__density_refuse(density, failed, "a one-form");
+  return dvi__density_refuse(failed, "a one-form");
 }
 
 static double largest(int64_t n, const double *x)
@@ -154,6 +154,8 @@ static dvi_status make_two_form(const dvi_matrix *gradients, dvi__csr *Omega)
   return status;
 }
 
+/* Refuse a singular two-form. One that is not finite at a state that the motion need not have is
+ * left to the start of a run. */
 static dvi_status check_regular(const dvi__csr *gradients)
 {
   dvi__csr Omega = {0};
@@ -172,13 +174,13 @@ static dvi_status check_regular(const dvi__csr *gradients)
       "component a rate");
 }
 
-/* Give the gradients of a sparse field's alpha at a state. */
+/* Give the gradients of a sparse field's alpha at a state, which need not be one of the motion. */
 static dvi_status evaluate_gradients(dvi_density *density, const double *q)
 {
   DVI_TRY(dvi__matrix_of_pattern(&density->one_form.patterns.qv, &density->gradients));
   const int failed = dvi__integral_evaluate(&density->one_form, &(dvi__density_point){.q = q},
                                             &(dvi__density_sums){.qv = density->gradients.value});
-  return dvi__density_refuse(density, failed, "a one-form");
+  return dvi__density_refuse(failed, "a one-form");
 }
 
 static dvi_status make_gradients(dvi_density *density)

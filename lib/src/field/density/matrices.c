@@ -18,9 +18,8 @@ static dvi_status no_memory(void)
   return dvi__fail(DVI_NO_MEMORY, "density: no memory for matrices");
 }
 
-dvi_status dvi__density_refuse(const dvi_density *density, int failed, const char *where)
+dvi_status dvi__density_refuse(int failed, const char *where)
 {
-  (void)density;
   if (failed == 0) return DVI_OK;
   if (failed == DVI_NO_MEMORY) return no_memory();
   return dvi__fail(failed > 0 ? DVI_CALLBACK_RETRY : DVI_CALLBACK_FAILED,
@@ -29,16 +28,22 @@ dvi_status dvi__density_refuse(const dvi_density *density, int failed, const cha
 
 /* ---- sparse matrices of integrals ---- */
 
-static dvi_status check_finite(const dvi_density *density, int64_t count, const double *value,
+static dvi_status refuse_entry(const dvi_density *density, int64_t row, double value,
                                const char *what)
 {
-  for (int64_t i = 0; i < count; i++)
-    if (!isfinite(value[i]))
-      return dvi__fail(DVI_NOT_FINITE,
-                       "density: the %s of %s parts is %g: look for coefficients that are not "
-                       "finite",
-                       what, density->count[DVI_DENSITY_QUADRATIC] ? "quadratic" : "kinetic",
-                       value[i]);
+  const int64_t place = density->unknown[row];
+  return dvi__fail(DVI_NOT_FINITE,
+                   "density: the %s has the entry %g at function %lld of component %d: look for "
+                   "coefficients and fixed values that are not finite",
+                   what, value, (long long)(place % density->functions),
+                   (int)(place / density->functions));
+}
+
+static dvi_status check_finite(const dvi_density *density, const dvi__csr *matrix, const char *what)
+{
+  for (int64_t i = 0; i < matrix->rows; i++)
+    for (int64_t e = matrix->start[i]; e < matrix->start[i + 1]; e++)
+      if (!isfinite(matrix->value[e])) return refuse_entry(density, i, matrix->value[e], what);
   return DVI_OK;
 }
 
@@ -153,7 +158,7 @@ static dvi_status make_sparse_mass(dvi_density *density)
   DVI_TRY(dvi__matrix_of_pattern(&kinetic->patterns.vv, &density->mass));
   const dvi__density_sums sums = {.vv = density->mass.value};
   const int failed = dvi__integral_evaluate(kinetic, &(dvi__density_point){0}, &sums);
-  return dvi__density_refuse(density, failed, "a kinetic part");
+  return dvi__density_refuse(failed, "a kinetic part");
 }
 
 dvi_status dvi__density_make_mass(dvi_density *density)
@@ -169,8 +174,7 @@ dvi_status dvi__density_make_mass(dvi_density *density)
                      "density: the coefficients of kinetic part '%s' vary in x, which couples all "
                      "modes of fourier: take kind=spline or fem, or make the part general",
                      density->kinetic.part[0]->name);
-  DVI_TRY(
-      check_finite(density, density->mass.start[density->unknowns], density->mass.value, "mass"));
+  DVI_TRY(check_finite(density, &density->mass, "mass"));
   make_symmetric(&density->mass);
   dvi__csr_drop_zeros(&density->mass);
   density->mass_is_diagonal = is_diagonal(&density->mass);
@@ -189,7 +193,7 @@ static dvi_status make_sparse_stiffness(dvi_density *density, double *zero)
   const dvi__density_sums sums = {
       .value = &density->rest, .q = density->load, .qq = density->stiffness.value};
   const int failed = dvi__integral_evaluate(quadratic, &(dvi__density_point){.q = zero}, &sums);
-  return dvi__density_refuse(density, failed, "a quadratic part");
+  return dvi__density_refuse(failed, "a quadratic part");
 }
 
 /* Coefficients that vary leave a potential without a Hessian of the matrix. */
@@ -201,7 +205,7 @@ static dvi_status make_fourier_stiffness(dvi_density *density, double *zero)
   density->has_rest = !is_constant || density->quadratic.depends_on_time;
   const int failed = dvi__integral_evaluate(&density->quadratic, &(dvi__density_point){.q = zero},
                                             &sums);
-  return dvi__density_refuse(density, failed, "a quadratic part");
+  return dvi__density_refuse(failed, "a quadratic part");
 }
 
 dvi_status dvi__density_make_stiffness(dvi_density *density)
@@ -219,10 +223,9 @@ dvi_status dvi__density_make_stiffness(dvi_density *density)
   for (int64_t i = 0; i < n && status == DVI_OK; i++) density->load[i] = -density->load[i];
   if (status == DVI_OK) make_symmetric(&density->stiffness);
   if (status == DVI_OK) dvi__csr_drop_zeros(&density->stiffness);
-  if (status == DVI_OK)
-    status = check_finite(density, density->stiffness.start[n], density->stiffness.value,
-                          "stiffness");
-  if (status == DVI_OK) status = check_finite(density, n, density->load, "load");
+  if (status == DVI_OK) status = check_finite(density, &density->stiffness, "stiffness");
+  for (int64_t i = 0; i < n && status == DVI_OK; i++)
+    if (!isfinite(density->load[i])) status = refuse_entry(density, i, density->load[i], "load");
   return status;
 }
 

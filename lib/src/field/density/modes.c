@@ -20,7 +20,7 @@ static dvi_status make_mass(const dvi_density *density, const double *q, dvi__cs
   DVI_TRY(dvi__matrix_of_pattern(&general->patterns.vv, mass));
   const int failed = dvi__integral_evaluate(general, &(dvi__density_point){.q = q},
                                             &(dvi__density_sums){.vv = mass->value});
-  return dvi__density_refuse(density, failed, general->part[0]->name);
+  return dvi__density_refuse(failed, general->part[0]->name);
 }
 
 /* Spread vectors of coordinates over all coefficients, with 0 where they are fixed. */

@@ -263,18 +263,41 @@ static int find_local(const int *list, int count, int coordinate)
   return low;
 }
 
-/* Tell if the next list is that of the last group. */
-static int is_repeated(const dvi__point_groups *g, const int *list, int count)
+/* Groups by their lists, in a table of open addresses. */
+typedef struct group_table {
+  uint64_t size; /* a power of 2 */
+  int *group;    /* [size] number + 1, or 0 */
+} group_table;
+
+static uint64_t hash_list(const int *list, int count)
 {
-  if (g->groups == 0) return 0;
-  const int64_t first = g->start[g->groups - 1];
-  return g->start[g->groups] - first == count &&
+  uint64_t hash = 14695981039346656037u;
+  for (int i = 0; i < count; i++) hash = (hash ^ (uint64_t)list[i]) * 1099511628211u;
+  return hash ^ (hash >> 29);
+}
+
+static int is_list_of(const dvi__point_groups *g, int group, const int *list, int count)
+{
+  const int64_t first = g->start[group];
+  return g->start[group + 1] - first == count &&
          memcmp(g->list + first, list, (size_t)count * sizeof *list) == 0;
 }
 
-static dvi_status find_groups(dvi__density_part *part, int *list)
+/* Give the group with a list, which is a new one if there is none. */
+static int find_group(dvi__point_groups *g, const group_table *table, const int *list, int count)
 {
-  dvi__point_groups *g = &part->group;
+  uint64_t at = hash_list(list, count) & (table->size - 1);
+  for (; table->group[at] != 0; at = (at + 1) & (table->size - 1))
+    if (is_list_of(g, table->group[at] - 1, list, count)) return table->group[at] - 1;
+  memcpy(g->list + g->start[g->groups], list, (size_t)count * sizeof *list);
+  g->square[g->groups + 1] = g->square[g->groups] + (int64_t)count * count;
+  g->start[g->groups + 1] = g->start[g->groups] + count;
+  table->group[at] = (int)++g->groups;
+  return (int)g->groups - 1;
+}
+
+static dvi_status find_groups(dvi__density_part *part, const group_table *table, int *list)
+{
   for (int64_t k = 0; k < part->points; k++) {
     const int count = list_point(part, k, list);
     if (count < 0)
@@ -282,17 +305,21 @@ static dvi_status find_groups(dvi__density_part *part, int *list)
                        "density: a point of part '%s' depends on more than %d coordinates: take "
                        "more cells of a lower degree",
                        part->name, (int)LIST_MOST);
-    if (!is_repeated(g, list, count)) {
-      memcpy(g->list + g->start[g->groups], list, (size_t)count * sizeof *list);
-      g->square[g->groups + 1] = g->square[g->groups] + (int64_t)count * count;
-      g->start[g->groups + 1] = g->start[g->groups] + count;
-      g->groups++;
-    }
-    g->of[k] = (int)g->groups - 1;
+    part->group.of[k] = find_group(&part->group, table, list, count);
     for (int a = 0; a < part->given.variables; a++)
       for (int64_t e = part->rows[a].start[k]; e < part->rows[a].start[k + 1]; e++)
         part->rows[a].local[e] = find_local(list, count, part->rows[a].local[e]);
   }
+  return DVI_OK;
+}
+
+/* The lists were given room for all points apart. */
+static dvi_status shrink_lists(dvi__point_groups *g)
+{
+  int *list = dvi__duplicate(g->list, (size_t)g->start[g->groups], sizeof *list);
+  if (list == NULL) return no_memory("points");
+  dvi__release(g->list);
+  g->list = list;
   return DVI_OK;
 }
 
@@ -301,13 +328,19 @@ static dvi_status make_groups(dvi__density_part *part)
   dvi__point_groups *g = &part->group;
   int64_t entries = 0;
   for (int a = 0; a < part->given.variables; a++) entries += part->rows[a].start[part->points];
+  group_table table = {.size = 2};
+  while (table.size < 2 * (uint64_t)part->points) table.size *= 2;
+  table.group = DVI_NEW(int, table.size);
   int *list = DVI_NEW(int, LIST_MOST + 1);
   g->of = DVI_NEW(int, part->points);
   g->start = DVI_NEW(int64_t, part->points + 1);
   g->square = DVI_NEW(int64_t, part->points + 1);
   g->list = DVI_NEW(int, entries);
-  dvi_status status = list && g->of && g->start && g->square && g->list ? find_groups(part, list)
-                                                                        : no_memory("points");
+  dvi_status status = table.group && list && g->of && g->start && g->square && g->list
+                          ? find_groups(part, &table, list)
+                          : no_memory("points");
+  if (status == DVI_OK) status = shrink_lists(g);
+  dvi__release(table.group);
   dvi__release(list);
   return status;
 }

@@ -17,7 +17,7 @@ dvi_status dvi_density_lift(const dvi_density *density, double t, const double *
     U[i] = number >= 0 ? q[number] : number < -1 ? G[-2 - number] : density->fixed[i];
   }
   dvi__release(G);
-  return dvi__density_refuse(density, failed, "a value that moves");
+  return dvi__density_refuse(failed, "a value that moves");
 }
 
 dvi_status dvi_density_lift_rate(const dvi_density *density, double t, const double *v,
@@ -33,7 +33,7 @@ dvi_status dvi_density_lift_rate(const dvi_density *density, double t, const dou
     rate[i] = number >= 0 ? v[number] : number < -1 ? G_rate[-2 - number] : 0;
   }
   dvi__release(G_rate);
-  return dvi__density_refuse(density, failed, "the rate of a value that moves");
+  return dvi__density_refuse(failed, "the rate of a value that moves");
 }
 
 static void take(const dvi_density *density, const double *U, double *q)
@@ -53,7 +53,7 @@ static dvi_status find_momenta(const dvi_density *density, const double *q, cons
     return dvi__fail(DVI_UNSUPPORTED, "density: the field has no rates, and no momenta");
   const int failed = dvi__integral_evaluate(of, &(dvi__density_point){.q = q, .v = v},
                                             &(dvi__density_sums){.v = p});
-  return dvi__density_refuse(density, failed, "a part with rates");
+  return dvi__density_refuse(failed, "a part with rates");
 }
 
 dvi_status dvi_density_project(const dvi_density *density, const double *U, const double *rate,

@@ -33,7 +33,7 @@ static dvi_status add_gradient(const dvi__integral *integral, double sign, const
   const int failed = dvi__integral_evaluate(integral, &(dvi__density_point){.q = q},
                                             &(dvi__density_sums){.q = part});
   for (int64_t i = 0; i < integral->density->unknowns; i++) F[i] += sign * part[i];
-  return dvi__density_refuse(integral->density, failed, integral->part[0]->name);
+  return dvi__density_refuse(failed, integral->part[0]->name);
 }
 
 /* Give F at q. part has room for as many numbers. */
@@ -71,7 +71,7 @@ static dvi_status make_part(const dvi__integral *integral, const double *q, dvi_
   }
   const int failed = dvi__integral_evaluate(integral, &(dvi__density_point){.q = q},
                                             &(dvi__density_sums){.qq = part->value});
-  return dvi__density_refuse(integral->density, failed, integral->part[0]->name);
+  return dvi__density_refuse(failed, integral->part[0]->name);
 }
 
 /* Add a sign times the Hessian of an integral to a matrix. */

@@ -14,19 +14,21 @@ static dvi_status fem_create(const dvi_space_options *options, const dvi_axis *a
                              dvi__line *line)
 {
   (void)options;
-  const int degree = line->value[DEGREE], points = line->value[POINTS];
+  const int degree = line->value[DEGREE], points = line->value[POINTS],
+            taken = points != 0 ? points : degree + 1;
+  const double cells = line->value[CELLS];
   long double mark[DEGREE_MOST + 1] = {0}, weight[DEGREE_MOST + 1] = {0};
   if (line->value[LUMPED] && points != 0)
     return dvi__fail(DVI_BAD_OPTION,
                      "space: fem: points=%d with lumped=yes, whose points are the nodes; leave one "
                      "of them out",
                      points);
+  DVI_TRY(dvi__space_check_sizes(degree * cells, taken * cells));
   DVI_TRY(dvi__line_divide(axis, line->value[CELLS], line));
   DVI_TRY(dvi__quadrature_long(DVI_LOBATTO, degree + 1, mark, weight));
   DVI_TRY(dvi__line_interpolate(degree, mark, line));
   line->smoothness = 1;
-  return line->value[LUMPED] ? dvi__line_lump(degree, weight, line)
-                             : dvi__line_gauss(points != 0 ? points : degree + 1, line);
+  return line->value[LUMPED] ? dvi__line_lump(degree, weight, line) : dvi__line_gauss(taken, line);
 }
 
 static void fem_explain(const dvi__line *line, dvi__note *note)

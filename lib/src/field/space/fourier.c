@@ -116,26 +116,43 @@ static double norm_of(const dvi__line *line, int64_t i)
   return sqrt((i == 0 ? 1 : 2) / (line->to - line->from));
 }
 
-/* Set values [points] to a derivative of the coefficients, which are `stride` apart. */
-static void synthesise(const dvi__line *line, int order, const double *U, int64_t stride,
-                       double *values, double *work)
+/* Neighbouring lines of an array, whose numbers along the axis are `stride` apart. Up to 8 at a
+ * time fill lines of the cache. */
+enum { LINES = 8 };
+
+typedef struct bundle {
+  int lines;
+  int64_t stride;
+} bundle;
+
+/* Set values [lines][points] to a derivative of the coefficients. */
+static void synthesise(const dvi__line *line, int order, const double *U, bundle b, double *values,
+                       double *work)
 {
-  memset(values, 0, (size_t)line->cell_points * sizeof *values);
+  const int64_t points = line->cell_points;
+  memset(values, 0, (size_t)(b.lines * points) * sizeof *values);
   for (int64_t i = 0; i < line->functions; i++) {
     const dvi__fourier_image image = differentiate(line, order, i);
-    values[image.other] += image.factor * norm_of(line, i) * U[i * stride];
+    const double factor = image.factor * norm_of(line, i);
+    for (int q = 0; q < b.lines; q++)
+      values[q * points + image.other] += factor * U[i * b.stride + q];
   }
-  dvi__fft_synthesise(line->own, values, work);
+  for (int q = 0; q < b.lines; q++) dvi__fft_synthesise(line->own, values + q * points, work);
 }
 
-/* The transposed sum. `values` [points] is overwritten. */
-static void add_analysis(const dvi__line *line, int order, double *values, double *U,
-                         int64_t stride, double *work)
+/* The transposed sum, with an array `copy` [lines][points] of the values. */
+static void add_analysis(const dvi__line *line, int order, const double *values, bundle b,
+                         double *copy, double *U, double *work)
 {
-  dvi__fft_analyse(line->own, values, work);
+  const int64_t points = line->cell_points;
+  for (int64_t j = 0; j < points; j++)
+    for (int q = 0; q < b.lines; q++) copy[q * points + j] = values[j * b.stride + q];
+  for (int q = 0; q < b.lines; q++) dvi__fft_analyse(line->own, copy + q * points, work);
   for (int64_t i = 0; i < line->functions; i++) {
     const dvi__fourier_image image = differentiate(line, order, i);
-    U[i * stride] += image.factor * norm_of(line, i) * values[image.other];
+    const double factor = image.factor * norm_of(line, i);
+    for (int q = 0; q < b.lines; q++)
+      U[i * b.stride + q] += factor * copy[q * points + image.other];
   }
 }
 
@@ -151,7 +168,7 @@ static int64_t mixed_size(const dvi_space *space, int axes)
   return size;
 }
 
-/* Work is an array for the values on one line, the work of its transform, and two arrays for what
+/* Work is an array for the values on some lines, the work of a transform, and two arrays for what
  * stands between two axes. */
 enum { LINE, TRANSFORM, BETWEEN, WORKPLACES = BETWEEN + DVI_AXES_MAX - 1 };
 
@@ -162,7 +179,8 @@ static void measure_work(const dvi_space *space, int64_t end[WORKPLACES])
   int64_t size[WORKPLACES] = {0}, sum = 0;
   for (int d = 0; d < space->dimension; d++) {
     const int64_t points = space->line[d].cell_points, own = dvi__fft_work(space->line[d].own);
-    if (points > size[LINE]) size[LINE] = points;
+    const int64_t lines = d + 1 < space->dimension ? LINES : 1;
+    if (lines * points > size[LINE]) size[LINE] = lines * points;
     if (own > size[TRANSFORM]) size[TRANSFORM] = own;
     if (d > 0) size[BETWEEN + d - 1] = mixed_size(space, d);
   }
@@ -183,7 +201,7 @@ static workplace lay_out_work(const dvi_space *space, double *work)
                      .between = {work + end[TRANSFORM], work + end[BETWEEN]}};
 }
 
-/* The lines along axis d: `before` times `after` of them. */
+/* The lines along axis d: `before` bundles of `after` neighbours. */
 static void count_lines(const dvi_space *space, int d, int64_t *before, int64_t *after)
 {
   *before = *after = 1;
@@ -191,24 +209,48 @@ static void count_lines(const dvi_space *space, int d, int64_t *before, int64_t 
   for (int e = d + 1; e < space->dimension; e++) *after *= space->line[e].cell_points;
 }
 
+static bundle take_lines(int64_t first, int64_t after)
+{
+  return (bundle){after - first < LINES ? (int)(after - first) : LINES, after};
+}
+
+/* Transform the lines along axis d. Those of the last axis need no copies. */
+static void synthesise_axis(const dvi__space_operator *B, int d, const double *from, double *to,
+                            workplace w)
+{
+  const dvi__line *line = &B->space->line[d];
+  const int64_t points = line->cell_points;
+  int64_t before, after;
+  count_lines(B->space, d, &before, &after);
+  for (int64_t i = 0; i < before; i++)
+    for (int64_t a = 0; a < after; a += LINES) {
+      const bundle b = take_lines(a, after);
+      double *at = to + i * points * after + a, *values = after > 1 ? w.line : at;
+      synthesise(line, B->order[d], from + i * line->functions * after + a, b, values, w.transform);
+      for (int64_t j = 0; j < points && after > 1; j++)
+        for (int q = 0; q < b.lines; q++) at[j * after + q] = values[q * points + j];
+    }
+}
+
+static void analyse_axis(const dvi__space_operator *B, int d, const double *from, double *to,
+                         workplace w)
+{
+  const dvi__line *line = &B->space->line[d];
+  int64_t before, after;
+  count_lines(B->space, d, &before, &after);
+  for (int64_t i = 0; i < before; i++)
+    for (int64_t a = 0; a < after; a += LINES)
+      add_analysis(line, B->order[d], from + i * line->cell_points * after + a,
+                   take_lines(a, after), w.line, to + i * line->functions * after + a, w.transform);
+}
+
 static void torus_apply(const dvi__space_operator *B, const double *U, double *values, double *work)
 {
-  const dvi_space *space = B->space;
-  int64_t before, after;
-  const workplace w = lay_out_work(space, work);
+  const workplace w = lay_out_work(B->space, work);
   const double *from = U;
-  for (int d = space->dimension - 1; d >= 0; d--) {
-    const dvi__line *line = &space->line[d];
+  for (int d = B->space->dimension - 1; d >= 0; d--) {
     double *to = d > 0 ? w.between[d - 1] : values;
-    count_lines(space, d, &before, &after);
-    for (int64_t b = 0; b < before; b++)
-      for (int64_t a = 0; a < after; a++) {
-        double *at = to + b * line->cell_points * after + a;
-        double *own = after == 1 ? at : w.line;
-        synthesise(line, B->order[d], from + b * line->functions * after + a, after, own,
-                   w.transform);
-        for (int j = 0; j < line->cell_points && after > 1; j++) at[j * after] = own[j];
-      }
+    synthesise_axis(B, d, from, to, w);
     from = to;
   }
 }
@@ -217,23 +259,14 @@ static void torus_add_transposed(const dvi__space_operator *B, const double *val
                                  double *work)
 {
   const dvi_space *space = B->space;
-  int64_t before, after;
   const workplace w = lay_out_work(space, work);
   const double *from = values;
-  for (int d = 0; d < space->dimension; d++) {
-    const dvi__line *line = &space->line[d];
-    double *to = d + 1 < space->dimension ? w.between[d] : U;
-    count_lines(space, d, &before, &after);
-    if (to != U) memset(to, 0, (size_t)mixed_size(space, d + 1) * sizeof *to);
-    for (int64_t b = 0; b < before; b++)
-      for (int64_t a = 0; a < after; a++) {
-        const double *at = from + b * line->cell_points * after + a;
-        for (int j = 0; j < line->cell_points; j++) w.line[j] = at[j * after];
-        add_analysis(line, B->order[d], w.line, to + b * line->functions * after + a, after,
-                     w.transform);
-      }
-    from = to;
+  for (int d = 0; d + 1 < space->dimension; d++) {
+    memset(w.between[d], 0, (size_t)mixed_size(space, d + 1) * sizeof(double));
+    analyse_axis(B, d, from, w.between[d], w);
+    from = w.between[d];
   }
+  analyse_axis(B, space->dimension - 1, from, U, w);
 }
 
 static dvi_status torus_create(const dvi_space_options *options, dvi_space *space)

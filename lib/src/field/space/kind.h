@@ -176,7 +176,7 @@ dvi_status dvi__box_place(dvi_space *space);
 /* Describe how many functions and points a product of several axes has. */
 void dvi__explain_product(const dvi_space *space, dvi__note *note);
 
-/* Check the counts of a space. DVI_BAD_SIZE. */
+/* Check the counts of a space, or of one of its axes before memory is taken. DVI_BAD_SIZE. */
 dvi_status dvi__space_check_sizes(double functions, double points);
 
 /* Check the order of a derivative. DVI_UNSUPPORTED. */

@@ -15,9 +15,6 @@ static const char *const coordinate[DVI_AXES_MAX] = {"x", "y", "z"};
 
 dvi_status dvi__space_check_sizes(double functions, double points)
 {
-  if (functions < 1)
-    return dvi__fail(DVI_BAD_SIZE,
-                     "space: there is no function; take more cells or a higher degree");
   if (functions <= INT_MAX && points <= INT_MAX) return DVI_OK;
   return dvi__fail(DVI_BAD_SIZE, "space: %.3g functions and %.3g points asked, %d possible",
                    functions, points, INT_MAX);

@@ -17,14 +17,17 @@ static dvi_status spline_create(const dvi_space_options *options, const dvi_axis
                                 dvi__line *line)
 {
   (void)options;
-  const int degree = line->value[DEGREE], points = line->value[POINTS];
+  const int degree = line->value[DEGREE],
+            points = line->value[POINTS] != 0 ? line->value[POINTS] : degree + 1;
+  const double cells = line->value[CELLS];
+  DVI_TRY(dvi__space_check_sizes(cells, points * cells));
   DVI_TRY(dvi__line_divide(axis, line->value[CELLS], line));
   line->degree = degree;
   line->locals = degree + 1;
   line->stride = 1;
   line->smoothness = degree;
   line->functions = line->cells + (line->periodic ? 0 : degree);
-  return dvi__line_gauss(points != 0 ? points : degree + 1, line);
+  return dvi__line_gauss(points, line);
 }
 
 static double knot(const dvi__line *line, int64_t i)
