@@ -210,6 +210,13 @@ static int undefined(int64_t count, double t, const double *x, double *V, void *
   return 0;
 }
 
+static int enormous(int64_t count, double t, const double *x, double *V, void *user)
+{
+  (void)t, (void)user;
+  for (int64_t i = 0; i < count; i++) V[i] = x[i] < 0 ? -1e200 : 0;
+  return 0;
+}
+
 static int late(int64_t count, double t, const double *x, double *V, void *user)
 {
   (void)x, (void)user;
@@ -250,8 +257,9 @@ START_TEST(terms_are_refused_with_a_reason)
   check_terms(fem, 0, (terms){.size = 1}, DVI_BAD_ARGUMENT, "terms.size");
   check_terms(fem, 0, (terms){.hbar = -1}, DVI_BAD_ARGUMENT, "hbar = -1");
   check_terms(fem, 0, (terms){.mass = NAN}, DVI_BAD_ARGUMENT, "mass");
-  check_terms(fem, 0, (terms){.interaction = INFINITY}, DVI_BAD_ARGUMENT, "interaction is inf");
+  check_terms(fem, 0, (terms){.interaction = INFINITY}, DVI_NOT_FINITE, "interaction is inf");
   check_terms(fem, 0, (terms){.potential = undefined}, DVI_NOT_FINITE, "at (-0.9");
+  check_terms(fem, 0, (terms){.potential = enormous}, DVI_NOT_FINITE, "is -1e+200 at (-0.9");
   check_terms(fem, 0, (terms){.potential = failing}, DVI_CALLBACK_FAILED, "failed with 7");
   check_terms(fem, 0, (terms){.interaction_at = bad_interaction}, DVI_NOT_FINITE, "interaction");
   check_terms(fem, 0, (terms){.fixed = "left, top"}, DVI_BAD_ARGUMENT, "\"top\"");

@@ -7,6 +7,7 @@
 #include "support/field/function_spaces.h"
 #include "support/field/marches.h"
 #include "support/field/schroedinger.h"
+#include "support/meshes.h"
 #include "support/suite.h"
 
 static const double pi = 3.14159265358979323846;
@@ -148,6 +149,56 @@ START_TEST(many_fourier_modes_are_found_without_a_matrix)
               (double[]){-4.5, -2, -.5}, 1e-12);
   check_modes(quantum_on_square("fourier:modes=14", -7, 7, 1, harmonic_square, 0), 6,
               (double[]){1, 2, 2, 3, 3, 3}, 1e-6);
+}
+END_TEST
+
+/* A step of 1e16 leaves one digit of energies near 1. */
+static int cliff(int64_t count, double t, const double *x, double *V, void *user)
+{
+  (void)t, (void)user;
+  for (int64_t i = 0; i < count; i++) V[i] = x[i] > 0 ? 1e16 : 0;
+  return 0;
+}
+
+START_TEST(states_that_roundings_hide_are_not_given)
+{
+  quantum q = quantum_on_line("fourier:modes=16", -5, 5, 1, cliff, 0);
+  double energy;
+  ck_assert(dvi_schroedinger_modes(q.equation, 1, &energy, NULL) == DVI_NOT_CONVERGED);
+  check_words("is not resolved");
+  free_quantum(&q);
+}
+END_TEST
+
+/* The lowest state has no energy at all. */
+START_TEST(free_particles_on_a_circle_are_found_by_both_ways)
+{
+  check_modes(quantum_on_line("fourier:modes=20", 0, 2 * pi, 1, NULL, 0), 3,
+              (double[]){0, 0.5, 0.5}, 1e-14);
+  check_modes(quantum_on_line("fourier:modes=250", 0, 2 * pi, 1, NULL, 0), 3,
+              (double[]){0, 0.5, 0.5}, 1e-14);
+}
+END_TEST
+
+/* ---- a mesh ---- */
+
+/* A square box of side 1 has pi^2 (k^2 + l^2)/2. Quadratic triangles are of order 4. */
+START_TEST(triangles_have_the_energies_of_a_box)
+{
+  double before = 0;
+  for (int cells = 4; cells <= 16; cells *= 2) {
+    dvi_mesh *mesh = jittered_mesh(2, 2, cells, 0, 1);
+    const dvi_schroedinger_terms terms = {0};
+    quantum q = quantum_with(space_on_mesh("fem:degree=2", mesh), &terms);
+    double energy;
+    ck_assert(dvi_schroedinger_modes(q.equation, 1, &energy, NULL) == DVI_OK);
+    const double error = energy - pi * pi;
+    ck_assert(error > 0);
+    if (before > 0) ck_assert(fabs(log2(before / error) - 4) < 0.2);
+    before = error;
+    free_quantum(&q);
+    dvi_mesh_destroy(&mesh);
+  }
 }
 END_TEST
 
@@ -294,6 +345,9 @@ SUITE(stationary)
   tcase_add_test(tests, fourier_converges_faster_than_any_power);
   tcase_add_test(tests, elements_converge_with_order_two_k);
   tcase_add_test(tests, many_fourier_modes_are_found_without_a_matrix);
+  tcase_add_test(tests, states_that_roundings_hide_are_not_given);
+  tcase_add_test(tests, free_particles_on_a_circle_are_found_by_both_ways);
+  tcase_add_test(tests, triangles_have_the_energies_of_a_box);
   tcase_add_test(tests, oscillators_of_a_radius_have_their_energies);
   tcase_add_test(tests, hydrogen_has_its_energies_in_both_forms);
   tcase_add_test(tests, states_are_orthonormal_and_stay_up_to_a_phase);
