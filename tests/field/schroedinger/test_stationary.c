@@ -317,6 +317,37 @@ START_TEST(condensates_in_two_dimensions_have_their_digits)
 }
 END_TEST
 
+static int tenfold(int64_t count, const double *x, double *beta, void *user)
+{
+  (void)x, (void)user;
+  for (int64_t i = 0; i < count; i++) beta[i] = 10;
+  return 0;
+}
+
+/* H(psi) psi = mu M psi makes psi exp(-i mu t/hbar). A step of order 8 has no other error here. */
+START_TEST(condensates_turn_by_their_chemical_potential)
+{
+  const dvi_schroedinger_terms terms = {.potential = harmonic, .interaction_at = tenfold};
+  quantum q = quantum_with(space_on_line("fem:degree=8,cells=20", -9, 9, 0), &terms);
+  double mu, *psi = calloc(2 * (size_t)q.functions, sizeof *psi);
+  ck_assert(dvi_schroedinger_ground(q.equation, 1, &mu, NULL, psi) == DVI_OK);
+  ck_assert(fabs(mu - condensates[0].mu) < 1e-9);
+  dvi_march *march = quantum_march(&q, "gauss:stages=4", 0.05);
+  const dvi_march_state start = {.size = sizeof start, .A = psi};
+  ck_assert(dvi_march_start(march, &start) == DVI_OK);
+  advance_march(march, 1);
+  double *now = sample_march(march, DVI_FORM_A);
+  for (int64_t i = 0; i < q.functions; i++) {
+    ck_assert(fabs(now[i] - cos(mu) * psi[i]) < 1e-11);
+    ck_assert(fabs(now[q.functions + i] + sin(mu) * psi[i]) < 1e-11);
+  }
+  free(now);
+  free(psi);
+  dvi_march_destroy(&march);
+  free_quantum(&q);
+}
+END_TEST
+
 /* norm beta alone counts: psi/sqrt(norm) has the interaction norm beta. */
 START_TEST(norm_scales_the_interaction)
 {
@@ -353,6 +384,7 @@ SUITE(stationary)
   tcase_add_test(tests, states_are_orthonormal_and_stay_up_to_a_phase);
   tcase_add_test(tests, condensates_have_the_digits_of_an_independent_program);
   tcase_add_test(tests, condensates_in_two_dimensions_have_their_digits);
+  tcase_add_test(tests, condensates_turn_by_their_chemical_potential);
   tcase_add_test(tests, norm_scales_the_interaction);
   tcase_add_test(tests, attraction_makes_a_soliton);
 }

@@ -68,7 +68,7 @@ dvi_status dvi_schroedinger_measure(const dvi_schroedinger *equation, double t, 
                                     dvi_schroedinger_values *values)
 {
   const dvi_schroedinger *s = equation;
-  dvi_schroedinger_values found;
+  dvi_schroedinger_values found = {0};
   if (s == NULL || psi == NULL || values == NULL || !isfinite(t))
     return dvi__fail(DVI_BAD_ARGUMENT,
                      "schroedinger: an equation, a finite time, an amplitude and a place for the "
