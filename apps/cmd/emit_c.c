@@ -5,6 +5,7 @@
 
 #include "cli/command.h"
 #include "cli/file.h"
+#include "load/density.h"
 #include "load/open.h"
 #include "cli/options.h"
 #include "load/scene.h"
@@ -63,9 +64,9 @@ static int emit_c(const emit_request *request, const char *path)
   problem *scene;
   int code = open_problem(path, &request->settings, &scene);
   if (code != DONE) return code;
-  if (dvi_scene_field(scene->scene) != NULL)
-    code = usage_error("emit-c: %s is a field on a mesh, which C files do not have; "
-                       "dvi/field.h makes one in a program",
+  if (has_field(scene))
+    code = usage_error("emit-c: %s is a field, which C files do not have; dvi/field.h and "
+                       "dvi/density.h make one in a program",
                        scene->name);
   if (code == DONE && request->name == NULL) code = identifier_of(scene, name);
   if (code == DONE)

@@ -1,4 +1,5 @@
 /* dvi modes, which computes the modes of a field. */
+#include <dvi/scene.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,13 +9,15 @@
 #include "cli/options.h"
 #include "cli/outputs.h"
 #include "csv/table.h"
+#include "load/density.h"
 #include "load/field.h"
 
 /* The options. */
 typedef struct modes_request {
   long count;
   double near;
-  const char *csv, *vtu;
+  bool at_static_state;
+  const char *csv, *vtu, *shapes;
   words settings;
 } modes_request;
 
@@ -66,6 +69,68 @@ static int find_modes(const modes_request *r, const problem *scene, const dvi_fi
   return code;
 }
 
+/* ---- fields with a density ---- */
+
+/* A state of a system of first order turns with the eigenvalue itself. */
+static int print_spectrum(const modes_request *r, const problem *scene, const double *eigenvalue)
+{
+  static const table_column columns[] = {
+      {"index", "%.0f"}, {"eigenvalue", "%.12g"}, {"omega", "%.12g"}, {NULL, NULL}};
+  FILE *stream = r->csv != NULL && strcmp(r->csv, "-") == 0 ? stderr : stdout;
+  const bool is_first_order = scene->terms->one_form != NULL;
+  int64_t unknowns;
+  (void)dvi_density_unknowns(density_of(scene), &unknowns);
+  result_table *rows = table_create(columns);
+  for (long i = 0; i < r->count; i++) {
+    table_number(rows, (double)(i + 1));
+    table_number(rows, eigenvalue[i]);
+    table_number(rows, is_first_order        ? (double)NAN
+                       : eigenvalue[i] < 0.0 ? (double)NAN
+                                             : sqrt(eigenvalue[i]));
+  }
+  bool good = table_good(rows);
+  if (good) {
+    (void)fprintf(stream, "Modes of %s, of %lld unknowns", scene->name, (long long)unknowns);
+    if (!isnan(r->near)) (void)fprintf(stream, ", the nearest to %.12g", r->near);
+    (void)fprintf(stream, "\n");
+    table_print(rows, stream, 0, 0, table_rows(rows));
+    good = r->csv == NULL || table_write(rows, r->csv);
+  }
+  table_destroy(&rows);
+  return good ? DONE : FAILED;
+}
+
+/* Find the static state near the start. */
+static dvi_status find_state(const problem *scene, double *U)
+{
+  const double *q, *v, *p;
+  dvi_scene_start(scene->scene, &q, &v, &p);
+  const dvi_status status = dvi_density_lift(density_of(scene), 0, q, U);
+  return status == DVI_OK ? dvi_density_solve(density_of(scene), U, NULL) : status;
+}
+
+static int find_spectrum(const modes_request *r, const problem *scene, const dvi_density *density)
+{
+  const size_t all = (size_t)density_coefficients(density), count = (size_t)r->count;
+  const dvi_modes_options options = {
+      .size = sizeof options, .count = (int)r->count, .shift = isnan(r->near) ? 0.0 : r->near};
+  double *eigenvalue = calloc(count + all + count * all, sizeof *eigenvalue);
+  if (eigenvalue == NULL) {
+    complain("out of memory");
+    return FAILED;
+  }
+  double *const U = eigenvalue + count, *const mode = U + all;
+  dvi_status status = r->at_static_state ? find_state(scene, U) : DVI_OK;
+  if (status == DVI_OK) status = dvi_density_modes(density, &options, U, eigenvalue, mode);
+  int code = status == DVI_OK ? print_spectrum(r, scene, eigenvalue) : library_error(status);
+  if (status == DVI_BAD_SIZE) code = USAGE; /* more modes than the field has */
+  if (code == DONE && r->shapes != NULL)
+    code = density_write(scene, r->shapes, (int)r->count, mode);
+  if (code == DONE && r->vtu != NULL) code = density_view(scene, r->vtu, (int)r->count, mode);
+  free(eigenvalue);
+  return code;
+}
+
 static const char *const details[] = {
     "A mode is a motion in which all points swing with one frequency omega, the square root of an "
     "eigenvalue of K x = lambda M x with the field's stiffness and mass. A part of the mesh "
@@ -76,7 +141,12 @@ static const char *const details[] = {
     "shapes are E. The static fields are counted and left out, absorbing walls count as pmc, and "
     "sigma as 0. Damped modes, and those of a grid that only yee advances, are found by dvi "
     "spectrum in the columns of a run.\n",
-    "Columns of --csv: index, eigenvalue, omega, ascending.\n",
+    "The modes of fields with a density (section 'density') are those of small motions about 0, or "
+    "with --static about the static state near the scene's start. All parts of the density count. "
+    "With one-forms, as of Schroedinger's equation, the eigenvalues are the lambda of H x = lambda "
+    "N x with the Hessians of the energy and of the norm.\n",
+    "Columns of --csv: index, eigenvalue, omega, ascending. Columns of --shapes: the position of "
+    "the quadrature points, and the value of each component of each mode.\n",
     "Examples:\n"
     "  dvi modes drum.yaml --count 6\n"
     "  dvi modes drum.yaml --count 3 --near 100 --csv - --vtu modes.vtu\n"
@@ -101,6 +171,13 @@ static const option command_options[] = {
      OPTION_AT(modes_request, vtu),
      .value = "FILE.vtu",
      .help = "write the mesh and the modes' shapes for ParaView"},
+    {.name = "static",
+     OPTION_AT(modes_request, at_static_state),
+     .help = "of a density: about the static state near the start; default: about 0"},
+    {.name = "shapes",
+     OPTION_AT(modes_request, shapes),
+     .value = "FILE",
+     .help = "of a density: write the modes' values as CSV"},
     {.name = "set",
      OPTION_AT(modes_request, settings),
      .value = "NAME=VALUE",
@@ -122,16 +199,20 @@ int modes_command(int argc, char **argv)
   modes_request r = {.count = 6, .near = (double)NAN};
   const char *name;
   const dvi_field *field;
+  const dvi_density *density = NULL;
   problem *scene;
   int code;
   if (!options_parse(&command, argc, argv, &r, &name, &code)) return code;
-  const named_file files[] = {{"csv", r.csv}, {"vtu", r.vtu}};
+  const named_file files[] = {{"csv", r.csv}, {"vtu", r.vtu}, {"shapes", r.shapes}};
   if (r.count > 100000) return usage_error("modes: --count %ld: 100000 at most", r.count);
-  code = outputs_distinct("modes", 2, files);
+  code = outputs_distinct("modes", 3, files);
   if (code != DONE) return code;
-  code = field_open("modes", name, &r.settings, &scene, &field);
+  code = field_open("modes", name, &r.settings, &scene, &field, &density);
   if (code != DONE) return code;
-  code = find_modes(&r, scene, field);
+  if (density == NULL && (r.at_static_state || r.shapes != NULL))
+    code = usage_error("modes: --static and --shapes are for fields with a density");
+  else
+    code = density != NULL ? find_spectrum(&r, scene, density) : find_modes(&r, scene, field);
   problem_destroy(&scene);
   return code;
 }

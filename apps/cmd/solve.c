@@ -9,6 +9,7 @@
 #include "cli/options.h"
 #include "cli/outputs.h"
 #include "csv/table.h"
+#include "load/density.h"
 #include "load/field.h"
 #include "load/scene.h"
 
@@ -102,6 +103,91 @@ static int solve_field(const solve_request *r, const problem *scene, const dvi_f
   return code;
 }
 
+/* ---- fields with a density ---- */
+
+/* Print what is watched of a state: energy and probes, or of a field without rates the probes. */
+static dvi_status print_watched(FILE *stream, const problem *scene, const dvi_density *density,
+                                const double *U)
+{
+  const dvi_system *system = dvi_scene_system(scene->scene);
+  const dvi_system_terms *terms = dvi_scene_terms(scene->scene);
+  const int momenta = terms->symmetry_count, probes = terms->invariant_count,
+            count = 1 + momenta + probes;
+  int64_t n;
+  (void)dvi_density_unknowns(density, &n);
+  double *q = calloc(2 * (size_t)n + (size_t)count, sizeof *q);
+  if (q == NULL) return DVI_NO_MEMORY;
+  double *const p = q + n, *const value = p + n;
+  dvi_status status = dvi_density_project(density, U, NULL, q, NULL, system != NULL ? p : NULL);
+  if (status == DVI_OK && system != NULL) status = dvi_system_invariants(system, 0, q, p, value);
+  if (status == DVI_OK && system != NULL)
+    (void)fprintf(stream, "%-10s %.12g\n", "energy", value[0]);
+  for (int i = 0; i < probes && status == DVI_OK; i++) {
+    const dvi_invariant *probe = terms->invariants + i;
+    double *to = value + 1 + momenta + i;
+    if (system == NULL && probe->value(0, q, p, to, probe->user) != 0) status = DVI_CALLBACK_FAILED;
+    if (status == DVI_OK) (void)fprintf(stream, "%-10s %.12g\n", probe->name, *to);
+  }
+  free(q);
+  return status;
+}
+
+/* Print the least and the greatest value of each component at the quadrature points. */
+static dvi_status print_ranges(FILE *stream, const problem *scene, const dvi_density *density,
+                               const double *U)
+{
+  static const int none[DVI_AXES_MAX] = {0};
+  const dvi_space *space = dvi_density_space(density);
+  const int64_t points = dvi_space_points(space, NULL, NULL);
+  double *value = calloc((size_t)points + 1, sizeof *value);
+  dvi_status status = value != NULL ? DVI_OK : DVI_NO_MEMORY;
+  for (int c = 0; c < dvi_density_components(density) && status == DVI_OK; c++) {
+    double least = INFINITY, most = -INFINITY;
+    status = dvi_space_apply(space, none, U + c * dvi_space_functions(space), value);
+    for (int64_t i = 0; i < points; i++) {
+      least = fmin(least, value[i]);
+      most = fmax(most, value[i]);
+    }
+    (void)fprintf(stream, "%-10s from %.12g to %.12g\n", dvi_scene_component(scene->scene, c),
+                  least, most);
+  }
+  free(value);
+  return status;
+}
+
+static int tell_state(const solve_request *r, const problem *scene, const dvi_density *density,
+                      const double *U, const dvi_field_solve_report *report)
+{
+  FILE *stream = r->csv != NULL && strcmp(r->csv, "-") == 0 ? stderr : stdout;
+  (void)fprintf(stream, "Static state of %s\n", scene->name);
+  (void)fprintf(stream, "unknowns   %lld of %lld coefficients\n", (long long)report->unknowns,
+                (long long)density_coefficients(density));
+  (void)fprintf(stream, "iterations %d\n", report->iterations);
+  (void)fprintf(stream, "residual   %.2e\n", report->residual);
+  dvi_status status = print_ranges(stream, scene, density, U);
+  if (status == DVI_OK) status = print_watched(stream, scene, density, U);
+  return status == DVI_OK ? DONE : library_error(status);
+}
+
+static int solve_density(const solve_request *r, const problem *scene, const dvi_density *density)
+{
+  const double *q, *v, *p;
+  dvi_field_solve_report report = {0};
+  double *U = calloc((size_t)density_coefficients(density), sizeof *U);
+  if (U == NULL) {
+    complain("out of memory");
+    return FAILED;
+  }
+  dvi_scene_start(scene->scene, &q, &v, &p);
+  dvi_status status = dvi_density_lift(density, 0, q, U);
+  if (status == DVI_OK) status = dvi_density_solve(density, U, &report);
+  int code = status == DVI_OK ? tell_state(r, scene, density, U, &report) : library_error(status);
+  if (code == DONE && r->csv != NULL) code = density_write(scene, r->csv, 1, U);
+  if (code == DONE && r->vtu != NULL) code = density_view(scene, r->vtu, 1, U);
+  free(U);
+  return code;
+}
+
 static const char *const details[] = {
     "The static state balances the stiffness, the potential, the source and the flux through the "
     "boundary: -div(a grad u) + V_u = f. Without a potential the problem is linear. With one it is "
@@ -111,7 +197,10 @@ static const char *const details[] = {
     "This is of waves ('field: wave'). A static electric field is minus the gradient of such a u, "
     "with a = eps, and the charges as the source. What is static of 'field: maxwell' is what a run "
     "with losses tends to.\n",
-    "Columns of --csv: vertex, its coordinates, u.\n",
+    "The static state of fields with a density (section 'density') is that where the derivatives "
+    "of all parts without rates vanish, found by Newton's method from the scene's start.\n",
+    "Columns of --csv: vertex, its coordinates, u. Of a density: the position of the quadrature "
+    "points, and the value of each component.\n",
     "Examples:\n"
     "  dvi solve membrane.yaml\n"
     "  dvi solve membrane.yaml --csv values.csv --vtu values.vtu\n",
@@ -148,16 +237,21 @@ int solve_command(int argc, char **argv)
   solve_request r = {.csv = NULL};
   const char *name;
   const dvi_field *field;
+  const dvi_density *density = NULL;
   problem *scene;
   int code;
   if (!options_parse(&command, argc, argv, &r, &name, &code)) return code;
   const named_file files[] = {{"csv", r.csv}, {"vtu", r.vtu}};
   code = outputs_distinct("solve", 2, files);
   if (code != DONE) return code;
-  code = field_open("solve", name, &r.settings, &scene, &field);
+  code = field_open("solve", name, &r.settings, &scene, &field, &density);
   if (code != DONE) return code;
-  code = scene_complete(scene);
-  if (code == DONE) code = solve_field(&r, scene, field);
+  if (density != NULL) {
+    code = solve_density(&r, scene, density);
+  } else {
+    code = scene_complete(scene);
+    if (code == DONE) code = solve_field(&r, scene, field);
+  }
   problem_destroy(&scene);
   return code;
 }

@@ -124,7 +124,7 @@ int stability_command(int argc, char **argv)
     return usage_error("stability: --fraction %g: above 0 and below 1 are possible", r.fraction);
   if (!isnan(r.span) && !(r.span > 0))
     return usage_error("stability: --span %g: a time above 0 is wanted", r.span);
-  code = field_open("stability", name, &r.settings, &scene, &field);
+  code = field_open("stability", name, &r.settings, &scene, &field, NULL);
   if (code != DONE) return code;
   code = examine_all(&r, scene, field);
   problem_destroy(&scene);

@@ -5,18 +5,19 @@
 #include <stdlib.h>
 
 #include "cli/command.h"
+#include "load/density.h"
 #include "load/open.h"
 
 enum { NAME_SIZE = 32 };
 
 int field_open(const char *command, const char *name, const words *settings, problem **scene,
-               const dvi_field **field)
+               const dvi_field **field, const dvi_density **density)
 {
   const int code = open_any(name, settings, scene);
   if (code != DONE) return code;
   if (dvi_scene_grid_only((*scene)->scene) != NULL) return refuse_grid(scene, false);
   *field = dvi_scene_field((*scene)->scene);
-  if (*field != NULL) return DONE;
+  if (*field != NULL || (density != NULL && (*density = density_of(*scene)) != NULL)) return DONE;
   problem_destroy(scene);
   return usage_error("%s: '%s' has no field; a scene with the sections mesh and field has one",
                      command, name);

@@ -1,15 +1,17 @@
 /** The field of a scene, and files of values on its mesh. */
 #ifndef FIELD_OF_SCENE_H
 #define FIELD_OF_SCENE_H
+#include <dvi/density.h>
 #include <dvi/field.h>
 
 #include "cli/options.h"
 #include "problem.h"
 
-/** Open a scene with a field. Returns DONE, or complains that `command` needs a field and returns
- * the exit code. */
+/** Open a scene with a field, or with a density, which is then set and `field` is NULL. A command
+ * without use for densities gives NULL. Returns DONE, or complains that `command` needs a field and
+ * returns the exit code. */
 int field_open(const char *command, const char *name, const words *settings, problem **scene,
-               const dvi_field **field);
+               const dvi_field **field, const dvi_density **density);
 
 /** Return the mesh of a field. */
 const dvi_mesh *field_mesh(const dvi_field *field);

@@ -9,6 +9,7 @@
 #include "csv/balance.h"
 #include "cli/command.h"
 #include "cli/spelling.h"
+#include "load/density.h"
 
 enum { MESSAGE_SIZE = 1024, WORD_SIZE = 64, HINT_SIZE = 128 };
 
@@ -187,13 +188,19 @@ int open_shaped(const char *name, const words *settings, bool one_point, problem
   return library_error(status);
 }
 
+/* Name a method for an example. */
+static const char *example_method(const problem *scene)
+{
+  if (density_of(scene) != NULL) return scene->terms->one_form != NULL ? "vprk" : "verlet";
+  return dvi_scene_field(scene->scene) != NULL ? "leapfrog" : "galerkin:degree=4";
+}
+
 int open_wish(const char *command, const problem *scene, const char **method)
 {
   if (*method == NULL) *method = scene->method;
   if (*method != NULL) return DONE;
   return usage_error("%s: --method is missing, for example --method %s; see dvi list methods",
-                     command,
-                     dvi_scene_field(scene->scene) != NULL ? "leapfrog" : "galerkin:degree=4");
+                     command, example_method(scene));
 }
 
 int refuse_noise(const char *command, const problem *scene)

@@ -1,6 +1,7 @@
 /* Problems from scene files. The subcommands treat them as problems of the catalogue. */
 #include "load/scene.h"
 
+#include "load/density.h"
 #include "load/field.h"
 
 #include <dvi/scene.h>
@@ -98,10 +99,22 @@ static bool describe_scene(dvi_scene *scene, problem *made)
   return copy_parameters(scene, made);
 }
 
+/* Tell if a scene is a density without rates. */
+static bool is_static(const dvi_scene *scene)
+{
+  dvi_scene_facts facts;
+  dvi_scene_facts_of(scene, &facts);
+  return dvi_scene_density(scene) != NULL && strcmp(facts.form, "static") == 0;
+}
+
 int scene_complete(problem *made)
 {
   dvi_scene *scene = made->scene;
   if (scene == NULL || made->system != NULL) return DONE;
+  if (is_static(scene))
+    return usage_error("the density of %s has no rates, so that nothing moves; dvi solve finds its "
+                       "static state",
+                       made->name);
   /* nothing here changes the system */
   made->system = (dvi_system *)dvi_scene_system(scene);
   if (made->system == NULL) return library_error(DVI_BAD_ARGUMENT);
@@ -259,6 +272,11 @@ void scene_tell(const problem *scene)
     (void)printf(", quadratic potentials %d", facts.quadratic_potentials);
   if (count_fast_potentials(scene->terms) > 0)
     (void)printf(", fast potentials %d", count_fast_potentials(scene->terms));
+  if (density_of(scene) != NULL) {
+    (void)printf("\n");
+    density_tell(scene);
+    return;
+  }
   if (dvi_scene_field(scene->scene) != NULL) {
     (void)printf("\n");
     field_tell(dvi_scene_field(scene->scene));

@@ -70,8 +70,9 @@ static bool shows_balance(const run_columns *c, int invariant)
 /* The probes of a field, behind its energy and momenta, are signals and no invariants. */
 static bool is_probe(const run_columns *c, const shown_column *column)
 {
-  return dvi_scene_field(c->scene->scene) != NULL && column->kind == COLUMN_INVARIANT &&
-         column->index > c->scene->terms->symmetry_count;
+  const dvi_scene *scene = c->scene->scene;
+  return (dvi_scene_field(scene) != NULL || dvi_scene_density(scene) != NULL) &&
+         column->kind == COLUMN_INVARIANT && column->index > c->scene->terms->symmetry_count;
 }
 
 static void choose_curves(run_trace *trace, bool chosen)

@@ -9,6 +9,7 @@
 #include "csv/balance.h"
 #include "cli/command.h"
 #include "csv/events.h"
+#include "load/density.h"
 #include "load/open.h"
 #include "csv/table.h"
 
@@ -45,7 +46,7 @@ static void write_names(FILE *stream, int count, char *const *name)
 /* A field has as many coordinates as vertices. Its energy and its probes tell of it. */
 static bool shows_state(const problem *model)
 {
-  return model->scene == NULL || dvi_scene_field(model->scene) == NULL;
+  return !has_field(model);
 }
 
 void sweep_header(const sweep_task *task, FILE *stream)

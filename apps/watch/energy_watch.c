@@ -7,6 +7,7 @@
 
 #include "csv/balance.h"
 #include "cli/command.h"
+#include "load/density.h"
 
 /* A prime number of steps, so that a motion whose period is a whole number of steps is seen at all
  * its phases. */
@@ -146,7 +147,7 @@ static bool has_affine_rows(const dvi_system_terms *terms)
 
 static bool is_damped_field(const problem *scene)
 {
-  return dvi_scene_field(scene->scene) != NULL && has_balances(scene);
+  return has_field(scene) && has_balances(scene);
 }
 
 bool energy_watch_start(energy_watch *w, const problem *scene, dvi_integrator *integrator,

@@ -13,6 +13,7 @@
 #include "watch/energy_watch.h"
 #include "csv/events.h"
 #include "cli/file.h"
+#include "load/density.h"
 #include "load/field.h"
 #include "watch/frames.h"
 #include "watch/run_end.h"
@@ -47,11 +48,26 @@ typedef struct recorder {
   const volatile sig_atomic_t *caught; /* signal that ends the run after its step, or 0 */
 } recorder;
 
+/* Write the components of a field with a density. */
+static bool recorder_write_components(recorder *r, const dvi_integrator *integrator)
+{
+  const double t = dvi_integrator_time(integrator);
+  density_views views = {.count = 0};
+  const dvi_status status = dvi_density_lift(density_of(r->scene), t, dvi_integrator_q(integrator),
+                                             r->form);
+  const bool good = (status == DVI_OK || library_error(status) == DONE) &&
+                    density_views_make(r->scene, 1, r->form, &views) == DONE &&
+                    frames_add(&r->frames, t, views.count, views.view);
+  density_views_clear(&views);
+  return good;
+}
+
 /* Write the field of a state, in its cells if it is Maxwell's. */
 static bool recorder_write_frame(recorder *r, const dvi_integrator *integrator)
 {
   const double t = dvi_integrator_time(integrator);
   if (!frames_are_wanted(&r->frames)) return true;
+  if (density_of(r->scene) != NULL) return recorder_write_components(r, integrator);
   field_view view;
   (void)dvi_field_lift(r->field, dvi_integrator_q(integrator), r->form);
   const bool good = field_view_make(r->field, dvi_field_degree(r->field) == 0 ? "u" : "A", r->form,
@@ -254,11 +270,14 @@ static int write_files(recorder *r, dvi_integrator *integrator)
 
 static int recorder_start_frames(recorder *r)
 {
+  const dvi_density *density = density_of(r->scene);
   r->field = dvi_scene_field(r->scene->scene);
-  const dvi_mesh *mesh = r->field != NULL ? field_mesh(r->field) : NULL;
+  const dvi_mesh *mesh = dvi_scene_mesh(r->scene->scene);
   const int code = frames_start(&r->frames, r->scene->name, mesh, r->request->pvd);
   if (code != DONE) return code;
-  r->form = calloc((size_t)dvi_mesh_count(mesh, dvi_field_degree(r->field)), sizeof *r->form);
+  const int64_t numbers = density != NULL ? density_coefficients(density)
+                                          : dvi_mesh_count(mesh, dvi_field_degree(r->field));
+  r->form = calloc((size_t)numbers, sizeof *r->form);
   if (r->form != NULL) return DONE;
   complain("out of memory");
   return FAILED;

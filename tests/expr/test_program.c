@@ -61,15 +61,16 @@ static void check_against_graph(const dvi__graph *graph, dvi__node root, double 
 }
 
 /* Functions of the C library and single roundings give the same number, because the call is the
- * same. */
+ * same. Sines and cosines are right to a unit in the last place (test_sines.c). */
 START_TEST(every_operation_does_what_the_graph_says)
 {
   for (int op = DVI__OP_NEGATE; op < DVI__OP_COUNT; op++) {
     if (op == DVI__OP_POWER) continue; /* see below */
     dvi__graph graph = {0};
     const dvi__node a = dvi__input(&graph, 0), b = dvi__input(&graph, 1);
-    const double least = op == DVI__OP_ACOSH ? 1.5 : 0.1;
-    check_against_graph(&graph, dvi__apply(&graph, (dvi__op)op, a, b), least, least + 0.8, 0.0);
+    const double least = op == DVI__OP_ACOSH ? 1.5 : 0.1,
+                 ulps = op == DVI__OP_SIN || op == DVI__OP_COS ? 1.0 : 0.0;
+    check_against_graph(&graph, dvi__apply(&graph, (dvi__op)op, a, b), least, least + 0.8, ulps);
     dvi__graph_free(&graph);
   }
 }
@@ -133,7 +134,7 @@ START_TEST(products_that_are_added_are_rounded_first)
 }
 END_TEST
 
-START_TEST(a_sine_and_a_cosine_of_one_angle_are_those_of_the_library)
+START_TEST(a_sine_and_a_cosine_of_one_angle_take_one_instruction)
 {
   dvi__graph graph = {0};
   const dvi__node a = dvi__input(&graph, 0), sine = dvi__apply(&graph, DVI__OP_SIN, a, a),
@@ -148,8 +149,8 @@ START_TEST(a_sine_and_a_cosine_of_one_angle_are_those_of_the_library)
   dvi__program_run(&program, DVI__LANES_MAX, input, registers);
   const double *result = registers + (ptrdiff_t)(program.row_count - 2) * DVI__LANES_MAX;
   for (int k = 0; k < DVI__LANES_MAX; k++) {
-    ck_assert_double_eq(result[k], cos(angle[k]));
-    ck_assert_double_eq(result[DVI__LANES_MAX + k], sin(angle[k]));
+    ck_assert_double_eq_tol(result[k], cos(angle[k]), DBL_EPSILON);
+    ck_assert_double_eq_tol(result[DVI__LANES_MAX + k], sin(angle[k]), DBL_EPSILON);
   }
   dvi__program_free(&program);
   dvi__graph_free(&graph);
@@ -322,7 +323,7 @@ SUITE(program)
   tcase_add_test(tests, conditions_take_a_side_in_every_lane);
   tcase_add_test(tests, constants_may_stand_on_either_side);
   tcase_add_test(tests, products_that_are_added_are_rounded_first);
-  tcase_add_test(tests, a_sine_and_a_cosine_of_one_angle_are_those_of_the_library);
+  tcase_add_test(tests, a_sine_and_a_cosine_of_one_angle_take_one_instruction);
   tcase_add_test(tests, powers_are_right_to_two_roundings_for_each_root);
   tcase_add_test(tests, inverse_roots_are_right_at_the_ends_of_the_range);
   tcase_add_test(tests, bits_do_not_depend_on_the_number_of_lanes);

@@ -390,7 +390,7 @@ END_TEST
 START_TEST(a_frozen_jacobian_serves_several_steps)
 {
   enum { ALL = 21, SPAN = 63 };
-  problem *model = create_problem("fpu", "ell=3");
+  problem *model = create_undeclared_problem("fpu", "ell=3");
   dvi_counters got, single;
   long alone = 0;
   spread_start(model, ALL, 0.01);

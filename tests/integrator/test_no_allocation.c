@@ -2,6 +2,7 @@
  * SUNDIALS, KLU and LAPACK. The first step that needs a solver prepares it. */
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "step/split/temporal_blocking.h"
 #include "support/heap.h"
@@ -12,8 +13,9 @@
 
 enum { STEPS = 60, COORDINATES_MOST = 600, INVARIANTS_MOST = 16 };
 
-/* On fpu's stiff springs (omega h = 5) fixed point iteration gives up, on the double pendulum it
- * does in mid-run, outer-solar's 72 unknowns of degree 4 go to LAPACK. */
+/* On fpu's stiff springs (omega h = 5) fixed point iteration gives up where they are not declared
+ * quadratic, on the double pendulum it does in mid-run, outer-solar's 72 unknowns of degree 4 go to
+ * LAPACK. */
 typedef struct place {
   const char *name, *setting;
   double h;
@@ -81,6 +83,16 @@ static int pair_is_accepted(int which)
   return method_accepts_problem(at->name, at->setting, methods[which % METHODS]);
 }
 
+/* The long one of fpu has springs that are taken implicitly in no iteration. Methods that split
+ * need them declared. */
+static problem *create_place(const place *at, const char *method)
+{
+  const int splits = strncmp(method, "galerkin", 8) != 0 && strcmp(method, "midpoint") != 0;
+  const int is_long = at->setting != NULL && strcmp(at->setting, "ell=200") == 0;
+  return splits || !is_long ? create_problem(at->name, at->setting)
+                            : create_undeclared_problem(at->name, at->setting);
+}
+
 /* Of 429 pairs. Many of the methods are for one-forms or for split potentials, which few places
  * have. */
 START_TEST(every_place_is_taken_by_the_methods_for_it)
@@ -116,7 +128,7 @@ START_TEST(no_step_allocates_but_to_prepare_a_solver)
 {
   const place *at = &places[pairs.which[_i] / METHODS];
   const char *method = methods[pairs.which[_i] % METHODS];
-  problem *model = create_problem(at->name, at->setting);
+  problem *model = create_place(at, method);
   dvi_integrator *integrator = start_integrator(model, method);
   const dvi_counters created = read_counters(integrator);
   ck_assert_int_gt(created.allocations, 0);
@@ -181,7 +193,7 @@ START_TEST(invariants_and_dense_output_do_not_allocate)
   const place *at = &places[pairs.which[_i] / METHODS];
   const char *method = methods[pairs.which[_i] % METHODS];
   double value[INVARIANTS_MOST], q[COORDINATES_MOST], v[COORDINATES_MOST];
-  problem *model = create_problem(at->name, at->setting);
+  problem *model = create_place(at, method);
   ck_assert_int_le(model->nq, COORDINATES_MOST);
   ck_assert_int_le(dvi_system_invariant_count(model->system), INVARIANTS_MOST);
   dvi_integrator *integrator = start_integrator(model, method);
@@ -223,7 +235,7 @@ END_TEST
 /* Else the zeros above would say nothing about the solvers. */
 START_TEST(the_places_reach_every_solver)
 {
-  problem *model = create_problem("fpu", "ell=200");
+  problem *model = create_undeclared_problem("fpu", "ell=200");
   dvi_integrator *integrator = start_integrator(model, "galerkin:degree=2");
   dvi_counters counters;
   (void)calls_of_steps(integrator, 0.1, STEPS);

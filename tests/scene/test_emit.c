@@ -195,9 +195,9 @@ static void check_output(const results *all)
   char command[1000];
   (void)snprintf(command, sizeof command,
                  "%s -std=c11 -O2 -Wall -Wextra -Wconversion -Wpedantic -Wno-unknown-pragmas "
-                 "-Werror %s -o %s -lm && %s >%s",
-                 DVI_C_COMPILER, path_in_folder("emitted.c"), path_in_folder("emitted"),
-                 path_in_folder("emitted"), path_in_folder("numbers"));
+                 "-Werror -I %s %s -o %s -lm && %s >%s",
+                 DVI_C_COMPILER, DVI_HEADERS, path_in_folder("emitted.c"),
+                 path_in_folder("emitted"), path_in_folder("emitted"), path_in_folder("numbers"));
   ck_assert_int_eq(system(command), 0); /* NOLINT(cert-env33-c): the compiler of the build */
   FILE *file = fopen(path_in_folder("numbers"), "r");
   ck_assert_ptr_nonnull(file);

@@ -5,6 +5,7 @@
 #include <stdio.h>
 
 #include "support/suite.h"
+#include "system/system.h"
 
 const char *method_spec(const char *format, ...)
 {
@@ -25,6 +26,14 @@ problem *create_problem(const char *name, const char *setting)
   ck_assert_msg(problem_create(name, setting != NULL, &setting, &made, message, sizeof message) ==
                     DVI_OK,
                 "%s", message);
+  return made;
+}
+
+problem *create_undeclared_problem(const char *name, const char *setting)
+{
+  problem *made = create_problem(name, setting);
+  for (int k = 0; k < made->system->potential_count; k++)
+    made->system->potentials[k].callbacks.quadratic = 0;
   return made;
 }
 

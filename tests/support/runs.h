@@ -9,6 +9,10 @@ const char *method_spec(const char *format, ...) __attribute__((format(printf, 1
 /* Creates a problem of the catalogue with at most one setting "name=value" (default NULL, none). */
 problem *create_problem(const char *name, const char *setting);
 
+/* Creates one whose quadratic potentials are not declared so. No iteration takes them implicitly,
+ * and stiff steps need Newton's methods. */
+problem *create_undeclared_problem(const char *name, const char *setting);
+
 /* Create an integrator or an ensemble. start_integrator() also starts it at the problem's start. */
 dvi_integrator *create_integrator(const dvi_system *system, const char *method);
 dvi_integrator *start_integrator(const problem *model, const char *method);

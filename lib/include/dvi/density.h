@@ -5,9 +5,9 @@
  *      S = int dt L,    L = sum over quadrature points x_k of w_k l(t, x_k, u, u', d u, ..)
  *
  *  with a density l of the components, their rates, and derivatives of both in space. l is a sum of
- *  parts, of which each says how it depends on the field. L is the Lagrangian of a mechanical system
- *  whose coordinates are the coefficients U_ci that the boundary leaves free, so that all methods of
- *  the library apply (Leok 2004, sec. 5.1; docs/fields/densities.md). */
+ *  parts, of which each says how it depends on the field. L is the Lagrangian of a mechanical
+ *  system whose coordinates are the coefficients U_ci that the boundary leaves free, so that all
+ *  methods of the library apply (Leok 2004, sec. 5.1; docs/fields/densities.md). */
 #ifndef DVI_DENSITY_H
 #define DVI_DENSITY_H
 #include <dvi/field.h>
@@ -32,7 +32,7 @@ typedef struct dvi_jet {
  *  with a minus sign. */
 typedef enum dvi_density_kind {
   DVI_DENSITY_KINETIC,   /**< a quadratic form of rates whose coefficients depend on x alone */
-  DVI_DENSITY_QUADRATIC, /**< at most quadratic, without rates, with second derivatives in x alone */
+  DVI_DENSITY_QUADRATIC, /**< at most quadratic, without rates. Only linear terms depend on t */
   DVI_DENSITY_POTENTIAL, /**< any function without rates */
   DVI_DENSITY_ONE_FORM,  /**< linear in rates, without t. The field is of first order then */
   DVI_DENSITY_GENERAL    /**< any function */
@@ -168,6 +168,12 @@ dvi_status dvi_density_system_terms(const dvi_density *density, dvi_system_terms
 
 /** Give all coefficients U [components*functions] from coordinates q, at time t. */
 dvi_status dvi_density_lift(const dvi_density *density, double t, const double *q, double *U);
+
+/** Give the rates of all coefficients [components*functions] from velocities v, at time t.
+ *
+ *  @retval (others)  as the callbacks fail */
+dvi_status dvi_density_lift_rate(const dvi_density *density, double t, const double *v,
+                                 double *rate);
 
 /** Give coordinates q, velocities v, and momenta p of coefficients U and their rates
  *  [components*functions] at time 0. U and rate may be NULL for 0, and q, v and p NULL if they are

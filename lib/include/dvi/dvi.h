@@ -19,6 +19,9 @@
 #include <dvi/maxwell.h>
 #include <dvi/mesh.h>
 #include <dvi/method.h>
+#include <dvi/moving.h>
+#include <dvi/multiscale.h>
+#include <dvi/multisymplectic.h>
 #include <dvi/noise.h>
 #include <dvi/number.h>
 #include <dvi/path.h>
@@ -29,6 +32,7 @@
 #include <dvi/schroedinger.h>
 #include <dvi/sensitivity.h>
 #include <dvi/shapes.h>
+#include <dvi/sines.h>
 #include <dvi/space.h>
 #include <dvi/spectrum.h>
 #include <dvi/status.h>

@@ -5,6 +5,7 @@
 #ifndef DVI_SCENE_H
 #define DVI_SCENE_H
 #include <dvi/control.h>
+#include <dvi/density.h>
 #include <dvi/field.h>
 #include <dvi/march.h>
 #include <dvi/sensitivity.h>
@@ -69,7 +70,7 @@ typedef struct dvi_scene_file {
 /** Facts about a scene, for people and for tests. */
 typedef struct dvi_scene_facts {
   /** "separable", "separable with a vector potential", "general Lagrangian", "one-form",
-   *  "Hamiltonian", "Hamiltonian with constraints" */
+   *  "Hamiltonian", "Hamiltonian with constraints", "static" */
   const char *form;
   /** "identity", "scalar", "diagonal", "sparse", "inertias" (of rotations and angles, and no more).
    *  NULL without a constant mass */
@@ -121,7 +122,7 @@ dvi_status dvi_scene_parse(const char *name, const char *text, size_t length, in
  *  allowed. */
 void dvi_scene_destroy(dvi_scene **scene);
 
-/** Return the system. Owned by the scene. That of a field is made by the first call. NULL for NULL,
+/** Return the system. Owned by the scene. That of fields is made by the first call. NULL for NULL,
  *  for a grid that only yee advances, and if a field's system cannot be made: dvi_last_error()
  *  tells why. */
 const dvi_system *dvi_scene_system(const dvi_scene *scene);
@@ -132,6 +133,19 @@ const dvi_system_terms *dvi_scene_terms(const dvi_scene *scene);
 /** Return the field of a scene with a mesh, whose unknowns are the coordinates u_1, u_2 and so on.
  *  Owned by the scene. NULL if the scene has no mesh. */
 const dvi_field *dvi_scene_field(const dvi_scene *scene);
+
+/** Return the field of a scene with a density, owned by the scene. Its coordinates are named u_1,
+ *  u_2 and so on by its fields. NULL if the scene has no density. */
+const dvi_density *dvi_scene_density(const dvi_scene *scene);
+
+/** Return the name of component i of the fields with a density ("u", "psi_re", "w_1"), owned by the
+ *  scene. NULL if there is none. */
+const char *dvi_scene_component(const dvi_scene *scene, int i);
+
+/** Write what was found in a density and what was built of it, one fact a line: fields, parts by
+ *  the summands of the expression, the space, the terms, and how well momenta can be kept. Cut off
+ *  at size. Nothing for other scenes. */
+void dvi_scene_density_explain(const dvi_scene *scene, char *text, size_t size);
 
 /** Give the options of dvi_field_solve that the scene sets. Returns 0 if it has no field. */
 int dvi_scene_solve_options(const dvi_scene *scene, dvi_field_solve_options *options);
@@ -164,8 +178,8 @@ dvi_status dvi_scene_march_create(const dvi_scene *scene, const dvi_march_option
 dvi_status dvi_scene_vectors(const dvi_scene *scene, const dvi_march *march, dvi_march_form form,
                              double *vector);
 
-/** Return the mesh of a scene of a field, owned by the scene. That of a grid for yee, which does
- *  without, is made by the first call. NULL without a field, or without memory. */
+/** Return the mesh of a scene of fields, owned by the scene. That of a grid for yee, which does
+ *  without, is made by the first call. NULL without a mesh, or without memory. */
 const dvi_mesh *dvi_scene_mesh(dvi_scene *scene);
 
 /** Tell why a scene of a field has a grid for yee, and neither mesh nor system: what only a grid

@@ -15,11 +15,20 @@
  *    chebyshev:degree=N                one polynomial by its values at Chebyshev's nodes, with N+1
  *                                      Gauss points: the mass is exact
  *    msfem:cells=N,fine=F              functions that solve (a phi')' = 0 in each cell, found on F
- *                                      parts of it (docs/fields/multiscale.md)
+ *                                      equal parts of it (1 to 512, default 16) with 8 Gauss points
+ *                                      each (docs/fields/multiscale.md)
+ *    msfem:..,edges=E                  on two axes, div (a grad phi) = 0 by F x F bilinear elements
+ *                                      in each cell, with the coefficient of their centres and
+ *                                      2 x 2 Gauss points. On edges of cells functions solve the
+ *                                      equation of the edge (E = solved, the default), are linear,
+ *                                      or come from a larger cell (oversampled), which has
+ *                                      overlap=P more elements on each side (default F/2). With
+ *                                      threads=T, T threads share the cells, and bits do not depend
+ *                                      on T. Both axes are msfem
  *
- *  Every kind has the option points=R: quadrature points a cell (fourier: of the whole axis), for
- *  those whose nodes are not their points. On a mesh of triangles or tetrahedra the kind is fem
- *  with degree=1 or 2, without cells.
+ *  Every kind has the option points=R: quadrature points a cell (fourier: of the whole axis, msfem:
+ *  of a part, along each axis), for those whose nodes are not their points. On a mesh of triangles
+ *  or tetrahedra the kind is fem with degree=1 or 2, without cells.
  *
  *  Functions are numbered with the first axis running slowest, and the points, too. Periodic ends
  *  are one. Sources: Leok 2004, secs. 5.1, 5.7 and 5.8; Karniadakis and Sherwin 2005, chs. 2-4. */
@@ -125,7 +134,7 @@ dvi_status dvi_space_evaluate(const dvi_space *space, const int *order, const do
 
 /** Give coefficients [functions] of a function f: those that interpolate at the nodes of fem,
  *  legendre, chebyshev and msfem, and otherwise those nearest to f at the quadrature points in the
- *  norm of the quadrature.
+ *  norm of the quadrature. In a box each axis has its own sort.
  *
  *  @param f  gets points x [dimension*count] axis by axis, and gives f [count]. It returns 0, or
  *            another number for a failure

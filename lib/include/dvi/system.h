@@ -199,12 +199,13 @@ typedef struct dvi_potential {
    *  unless the system is autonomous. */
   int (*rate)(double t, const double *q, double *V_t, void *user);
   int (*rate_batch)(int count, const double *t, const double *q, double *V_t, void *user);
-  /** not 0 if the potential's forces are stiff. Splitting methods treat it apart from the others
-   *  (docs/methods/imex.md). All other methods treat it as the rest */
+  /** not 0 if the forces are stiff. Splitting methods treat them apart (docs/methods/imex.md) */
   int fast;
-  /** not 0 if V = q.Kq/2 + b(t).q + c(t) with a constant K, whose Hessian is evaluated once.
-   *  dvi_system_check tests this */
+  /** not 0 if V = q.Kq/2 + b(t).q + c(t) with a constant K. dvi_system_check tests this */
   int quadratic;
+  /** not 0 if no Hessian of V is to be formed, such as a dense one of a large space, and none by
+   *  differences. Fixed-point iteration alone solves steps, and methods with Hessians refuse V */
+  int without_hessian;
   /** bound of the angular frequencies of a quadratic potential, by which explicit methods refuse
    *  unstable steps, beyond 2/fastest for verlet. 0 if not known (default) */
   double fastest;

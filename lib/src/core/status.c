@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-static _Thread_local char sentence[DVI__SENTENCE_SIZE];
+static _Thread_local char sentence[DVI__SENTENCE_SIZE], reason[DVI__SENTENCE_SIZE];
 
 const char *dvi_status_name(dvi_status status)
 {
@@ -59,4 +59,19 @@ dvi_status dvi__fail_in(dvi_status status, const char *format, ...)
                    DVI__SENTENCE_SIZE - 3 - length, sentence);
   memcpy(sentence, text, sizeof text);
   return status;
+}
+
+int dvi__return_because(int returned, const char *format, ...)
+{
+  va_list arguments;
+  va_start(arguments, format);
+  (void)dvi_number_vprint(reason, sizeof reason, format, arguments);
+  va_end(arguments);
+  return returned;
+}
+
+void dvi__take_reason(char *text)
+{
+  memcpy(text, reason, sizeof reason);
+  reason[0] = '\0';
 }

@@ -26,4 +26,11 @@ dvi_status dvi__fail(dvi_status status, const char *format, ...) DVI_PRINTF(2, 3
 /* Put "context: " in front of this thread's error sentence and return the status. */
 dvi_status dvi__fail_in(dvi_status status, const char *format, ...) DVI_PRINTF(2, 3);
 
+/* Keep a reason for the number that a callback of the library itself is about to return, and return
+ * the number. The sentence on the callback's failure takes the reason. */
+int dvi__return_because(int returned, const char *format, ...) DVI_PRINTF(2, 3);
+
+/* Move this thread's reason to text [DVI__SENTENCE_SIZE]. The text is empty without one. */
+void dvi__take_reason(char *text);
+
 #endif

@@ -33,8 +33,8 @@ typedef int dvi__node;
   X(SQRT, 1, "sqrt")                                                                      \
   X(EXP, 1, "exp")                                                                        \
   X(LOG, 1, "log")                                                                        \
-  X(SIN, 1, "sin")                                                                        \
-  X(COS, 1, "cos")                                                                        \
+  X(SIN, 1, "dvi_sin")                                                                    \
+  X(COS, 1, "dvi_cos")                                                                    \
   X(TAN, 1, "tan")                                                                        \
   X(ASIN, 1, "asin")                                                                      \
   X(ACOS, 1, "acos")                                                                      \

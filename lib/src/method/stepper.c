@@ -134,9 +134,20 @@ static dvi_status stepper_choose_method(dvi__stepper *stepper, const char *speci
   return check_shapes(stepper->method, stepper->shapes);
 }
 
+/* Name the method that refuses a potential without a Hessian, unless the sentence does so. */
+static dvi_status refuse_by_name(const dvi__stepper *stepper, dvi_status status)
+{
+  const char *name = stepper->method->name;
+  const int named = strncmp(dvi_last_error(), name, strlen(name)) == 0;
+  if (status != DVI_UNSUPPORTED || named || dvi__system_without_hessian(stepper->system) == NULL)
+    return status;
+  return dvi__fail_in(status, "%s", name);
+}
+
 static dvi_status stepper_create_method(dvi__stepper *stepper)
 {
-  DVI_TRY(stepper->method->create(stepper));
+  const dvi_status status = stepper->method->create(stepper);
+  if (status != DVI_OK) return refuse_by_name(stepper, status);
   DVI_TRY(dvi__damping_create(stepper));
   return spell_out(stepper);
 }

@@ -12,7 +12,7 @@ dvi_status dvi_scene_depend(dvi_scene *scene, dvi_dependence *dependence, char *
   if (scene == NULL || dependence == NULL) return DVI_BAD_ARGUMENT;
   if (message != NULL && size > 0) message[0] = '\0';
   if (scene->terms.lagrangian == NULL && scene->kinetic == NULL) return DVI_UNSUPPORTED;
-  if (dvi__has_factors(scene)) return DVI_UNSUPPORTED;
+  if (dvi__has_factors(scene) || scene->density != NULL) return DVI_UNSUPPORTED;
   if (scene->varied_second == NULL) {
     dvi__complaint complaint = {
         .source = &scene->source, .message = message, .size = message != NULL ? size : 0};

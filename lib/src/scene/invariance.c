@@ -335,7 +335,8 @@ static void try_all(search *s)
 int dvi_scene_invariance(const dvi_scene *scene, char *text, size_t size)
 {
   if (size > 0 && text != NULL) text[0] = '\0';
-  if (scene == NULL || text == NULL || scene->terms.factors != NULL || scene->field != NULL)
+  if (scene == NULL || text == NULL || scene->terms.factors != NULL || scene->field != NULL ||
+      scene->density != NULL)
     return -1;
   search s = {.scene = scene, .text = text, .size = size};
   const int nodes = largest_kernel(scene, &s.work);

@@ -302,7 +302,7 @@ static void write_kink(const dvi_scene *scene, const found *worst, char *text, s
 int dvi_scene_kink(const dvi_scene *scene, char *text, size_t size)
 {
   if (size > 0 && text != NULL) text[0] = '\0';
-  if (scene == NULL || text == NULL) return -1;
+  if (scene == NULL || text == NULL || scene->density != NULL) return -1;
   found worst = {.order = SMOOTH + 1};
   for (const dvi__scene_term *term = scene->functions; term != NULL; term = term->next)
     for (int k = 0; (term->role == DVI__ROLE_MOTION || term == scene->kinetic) &&

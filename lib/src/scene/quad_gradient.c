@@ -54,7 +54,7 @@ dvi_status dvi_scene_quad_gradient(const dvi_scene *scene, dvi_pair t, const dvi
 {
   if (scene == NULL || q == NULL || v == NULL || L_q == NULL || L_v == NULL)
     return DVI_BAD_ARGUMENT;
-  if (dvi__has_factors(scene) || scene->terms.holonomic_count > 0 ||
+  if (dvi__has_factors(scene) || scene->density != NULL || scene->terms.holonomic_count > 0 ||
       scene->terms.nonholonomic_count > 0 || scene->terms.contact_count > 0 ||
       (scene->terms.lagrangian == NULL && scene->kinetic == NULL))
     return DVI_UNSUPPORTED;

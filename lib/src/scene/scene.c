@@ -29,6 +29,7 @@ static int term_has_time(const dvi__scene_term *term)
 /* Find if any function has the time. An autonomous system has no rates. */
 static void find_time(dvi_scene *scene)
 {
+  if (scene->density != NULL) return; /* whose own terms say so */
   int timed = scene->field != NULL && !scene->terms.autonomous;
   for (const dvi__scene_term *term = scene->functions; term != NULL; term = term->next)
     timed = timed || (term->role != DVI__ROLE_AUXILIARY && term_has_time(term));
@@ -108,7 +109,7 @@ static bool read_scene(dvi_scene *scene)
 {
   if (!dvi__tree_read(&scene->source, &scene->arena, scene->complaint, &scene->tree)) return false;
   if (!dvi__scene_read_tree(scene)) return false;
-  if (scene->field == NULL && (!scene_make_system(scene) || !dvi__scene_complete_start(scene)))
+  if (!dvi__is_of_field(scene) && (!scene_make_system(scene) || !dvi__scene_complete_start(scene)))
     return false;
   find_bodies(scene);
   return show_parameters(scene) && list_unused(scene);
@@ -223,6 +224,7 @@ void dvi_scene_destroy(dvi_scene **scene)
   *scene = NULL;
   dvi_system_destroy(&own->system);
   dvi__scene_field_clear(own);
+  dvi__scene_density_clear(own);
   dvi_joints_destroy(&own->joints);
   for (dvi__scene_term *term = own->functions; term != NULL; term = term->next)
     dvi__function_destroy(&term->function);
@@ -250,7 +252,7 @@ static void make_system_of_field(dvi_scene *scene)
 const dvi_system *dvi_scene_system(const dvi_scene *scene)
 {
   if (scene == NULL) return NULL;
-  if (scene->field != NULL && scene->q != NULL) make_system_of_field((dvi_scene *)scene);
+  if (dvi__is_of_field(scene) && scene->q != NULL) make_system_of_field((dvi_scene *)scene);
   return scene->system;
 }
 

@@ -57,6 +57,7 @@ static uint64_t hash_potentials(const dvi_system *s)
     const dvi__potential_term *term = &s->potentials[k];
     const int speed[] = {term->callbacks.fast != 0, term->callbacks.quadratic != 0};
     hash = dvi__hash(hash_text(hash, term->name), sizeof speed, speed);
+    if (term->callbacks.without_hessian) hash = hash_text(hash, "without a Hessian");
   }
   return hash;
 }

@@ -212,13 +212,23 @@ struct dvi_system {
   dvi__pattern qv, vv, qq, by_q, by_v;
 };
 
-/* Give a lower bound of the entries of L_qq. A pattern that was not declared counts as full. */
+/* Give a lower bound of the entries of L_qq. A pattern that was not declared counts as full, and
+ * that of a potential without a Hessian as empty. */
 size_t dvi__system_least_entries(const dvi_system *system);
 
 /* Complete the patterns of L_qq and of the forces, once. Patterns that were not declared become
  * full, with n^2 entries that only a method with Hessians should pay for. Integrators on several
- * threads may call this at one time. Return DVI_BAD_SIZE if an int cannot count the entries. */
+ * threads may call this at one time. Return DVI_BAD_SIZE if an int cannot count the entries, and
+ * DVI_UNSUPPORTED if a potential is declared without a Hessian. */
 dvi_status dvi__system_prepare_hessian(const dvi_system *system);
+
+/* Do the same for the terms that have Hessians alone. */
+dvi_status dvi__system_complete_patterns(const dvi_system *system);
+
+/* Return the name of the first potential that is declared without a Hessian, or NULL. The second
+ * function returns DVI_UNSUPPORTED if there is one. */
+const char *dvi__system_without_hessian(const dvi_system *system);
+dvi_status dvi__system_has_hessians(const dvi_system *system);
 
 /* Return a bound of the frequencies of the quadratic potentials that declare theirs, 0 if none
  * does. */

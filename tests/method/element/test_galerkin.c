@@ -117,7 +117,7 @@ END_TEST
  * method. The counters tell which one ran. */
 START_TEST(the_contraction_chooses_the_solver)
 {
-  problem *chain = create_problem("fpu", NULL);
+  problem *chain = create_undeclared_problem("fpu", NULL);
   dvi_integrator *slow = start_integrator(chain, "galerkin"),
                  *stiff = start_integrator(chain, "galerkin");
   dvi_counters counters;

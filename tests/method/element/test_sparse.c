@@ -78,7 +78,7 @@ static void take_steps(dvi_integrator *integrator, measured *m)
 
 static void measure(const kind *k, int ell, measured *m)
 {
-  problem *model = create_problem("fpu", method_spec("ell=%d", ell));
+  problem *model = create_undeclared_problem("fpu", method_spec("ell=%d", ell));
   m->n = model->nq;
   m->entries = entries_of(model, &k->space);
   const long before = heap_bytes();

@@ -9,6 +9,7 @@
 #include "expr/compile/lanes.h"
 #include "expr/compile/program.h"
 #include "expr/compile/program_codes.h"
+#include "expr/compile/sines.h"
 
 /* Return 1 if inverse_powers can find the root of x. Such an x has a root and is not near the ends
  * of the range. */
@@ -111,15 +112,32 @@ DVI__EXPR_INLINE void fill_up(int lanes, int width, double *to)
   for (int k = lanes; k < width; k++) to[k] = to[lanes - 1];
 }
 
-static void sines_and_cosines(int lanes, int width, const double *restrict angle,
-                              double *restrict sine, double *restrict cosine)
+DVI__EXPR_INLINE void sines_and_cosines(int width, const double *restrict angle,
+                                        double *restrict sine, double *restrict cosine)
 {
-  for (int k = 0; k < lanes; k++) {
+  const int plain = dvi__count_plain_angles(width, angle);
+  dvi__plain_sines(width, angle, sine, cosine);
+  for (int k = 0; plain < width && k < width; k++) {
+    if (dvi_angle_is_plain(angle[k])) continue;
     sine[k] = sin(angle[k]);
     cosine[k] = cos(angle[k]);
   }
-  fill_up(lanes, width, sine);
-  fill_up(lanes, width, cosine);
+}
+
+DVI__EXPR_INLINE void sines(int width, const double *restrict angle, double *restrict sine)
+{
+  const int plain = dvi__count_plain_angles(width, angle);
+  dvi__plain_sine(width, 0, angle, sine);
+  for (int k = 0; plain < width && k < width; k++)
+    if (!dvi_angle_is_plain(angle[k])) sine[k] = sin(angle[k]);
+}
+
+DVI__EXPR_INLINE void cosines(int width, const double *restrict angle, double *restrict cosine)
+{
+  const int plain = dvi__count_plain_angles(width, angle);
+  dvi__plain_sine(width, 1, angle, cosine);
+  for (int k = 0; plain < width && k < width; k++)
+    if (!dvi_angle_is_plain(angle[k])) cosine[k] = cos(angle[k]);
 }
 
 /* Return x where a condition holds. Its operands are read before anything is decided. gcc 12 takes
@@ -178,8 +196,6 @@ static void call_library(int op, int lanes, int width, const double *restrict a,
   switch (op) {
     CALL(DVI__OP_EXP, exp(a[k]))
     CALL(DVI__OP_LOG, log(a[k]))
-    CALL(DVI__OP_SIN, sin(a[k]))
-    CALL(DVI__OP_COS, cos(a[k]))
     CALL(DVI__OP_TAN, tan(a[k]))
     CALL(DVI__OP_ASIN, asin(a[k]))
     CALL(DVI__OP_ACOS, acos(a[k]))
@@ -217,8 +233,10 @@ DVI__EXPR_INLINE void run_instructions(const int below, const dvi__program *prog
     case DVI__CODE_ROOT_POWER: root_powers(width, value, a, to); break;
     case DVI__CODE_INVERSE_ROOT_POWER: inverse_root_powers(width, value, a, to); break;
     case DVI__CODE_SINE_AND_COSINE:
-      sines_and_cosines(lanes, width, a, to, registers + (ptrdiff_t)at->b * width);
+      sines_and_cosines(width, a, to, registers + (ptrdiff_t)at->b * width);
       break;
+    case DVI__OP_SIN: sines(width, a, to); break;
+    case DVI__OP_COS: cosines(width, a, to); break;
     default: call_library(at->op, lanes, width, a, b, to);
     }
   }

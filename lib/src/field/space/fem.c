@@ -42,10 +42,10 @@ static void fem_explain(const dvi__line *line, dvi__note *note)
 
 const dvi__kind dvi__fem = {
     .form = {.name = "fem",
-             .key = {[DEGREE] = {"degree", 1, DEGREE_MOST, 1, 0},
-                     [CELLS] = {"cells", 1, CELLS_MOST, 0, 0},
-                     [LUMPED] = {"lumped", 0, 1, 0, 1},
-                     [POINTS] = {"points", 1, POINTS_MOST, 0, 0}}},
+             .key = {[DEGREE] = {"degree", 1, DEGREE_MOST, 1, NULL},
+                     [CELLS] = {"cells", 1, CELLS_MOST, 0, NULL},
+                     [LUMPED] = {"lumped", 0, 1, 0, dvi__no_yes},
+                     [POINTS] = {"points", 1, POINTS_MOST, 0, NULL}}},
     .create = fem_create,
     .local = dvi__line_polynomials,
     .is_affine = 1,

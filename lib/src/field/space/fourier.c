@@ -354,8 +354,8 @@ const dvi__domain dvi__torus = {
 
 const dvi__kind dvi__fourier = {
     .form = {.name = "fourier",
-             .key = {[MODES] = {"modes", 1, MODES_MOST - 1, 0, 0},
-                     [POINTS] = {"points", 1, DVI__FFT_MAX, 0, 0}}},
+             .key = {[MODES] = {"modes", 1, MODES_MOST - 1, 0, NULL},
+                     [POINTS] = {"points", 1, DVI__FFT_MAX, 0, NULL}}},
     .create = fourier_create,
     .destroy = destroy_plan,
     .explain = fourier_explain,

@@ -14,20 +14,23 @@
 #include "field/space/space.h"
 
 enum {
-  DVI__SPACE_KEYS = 4,   /* most options of a kind */
+  DVI__SPACE_KEYS = 6,   /* most options of a kind */
   DVI__ORDER_MOST = 16,  /* of derivatives */
   DVI__LOCALS_MOST = 257 /* local functions of a cell */
 };
 
 /* ---- specifications ---- */
 
-/* An option, a whole number. With `is_switch` it is yes, 1, or no, 0. */
+/* An option, a whole number, or one of the words that stand for the numbers from 0. */
 typedef struct dvi__space_key {
   const char *name;
   int least, most;
-  int fallback; /* the value if the option is not given. 0 often means "not given" */
-  int is_switch;
+  int fallback;            /* the value if the option is not given. 0 often means "not given" */
+  const char *const *word; /* ended by NULL. NULL for numbers */
 } dvi__space_key;
+
+/* The words of a switch. */
+extern const char *const dvi__no_yes[];
 
 /* A name with its options, of which the last ones may have no name. */
 typedef struct dvi__spec_form {
@@ -193,7 +196,7 @@ dvi_status dvi__space_sample(int dimension, const dvi__sampled *f, int64_t count
 /* The kinds of axes, ended by NULL, and the domains. */
 extern const dvi__kind *const dvi__kinds[];
 extern const dvi__kind dvi__fem, dvi__spline, dvi__legendre_element, dvi__chebyshev_element,
-    dvi__fourier;
-extern const dvi__domain dvi__box, dvi__torus, dvi__simplices;
+    dvi__fourier, dvi__msfem;
+extern const dvi__domain dvi__box, dvi__torus, dvi__simplices, dvi__msfem_plane;
 
 #endif

@@ -60,7 +60,7 @@ static void legendre_explain(const dvi__line *line, dvi__note *note)
 }
 
 const dvi__kind dvi__legendre_element = {
-    .form = {.name = "legendre", .key = {[DEGREE] = {"degree", 1, DEGREE_MOST, 0, 0}}},
+    .form = {.name = "legendre", .key = {[DEGREE] = {"degree", 1, DEGREE_MOST, 0, NULL}}},
     .create = legendre_create,
     .local = dvi__line_polynomials,
     .is_affine = 1,
@@ -70,8 +70,8 @@ const dvi__kind dvi__legendre_element = {
 
 const dvi__kind dvi__chebyshev_element = {
     .form = {.name = "chebyshev",
-             .key = {[DEGREE] = {"degree", 1, DEGREE_MOST, 0, 0},
-                     [POINTS] = {"points", 1, DVI__QUADRATURE_MOST, 0, 0}}},
+             .key = {[DEGREE] = {"degree", 1, DEGREE_MOST, 0, NULL},
+                     [POINTS] = {"points", 1, DVI__QUADRATURE_MOST, 0, NULL}}},
     .create = chebyshev_create,
     .local = dvi__line_polynomials,
     .is_affine = 1,

@@ -170,7 +170,7 @@ static dvi_status read_options(const dvi_space_options *options, simplices *own)
 {
   static const dvi__spec_form form = {
       .name = "fem",
-      .key = {[DEGREE] = {"degree", 1, 2, 1, 0}, [POINTS] = {"points", 1, 14, 0, 0}}};
+      .key = {[DEGREE] = {"degree", 1, 2, 1, NULL}, [POINTS] = {"points", 1, 14, 0, NULL}}};
   const dvi__spec_form *const forms[] = {&form};
   int number, value[DVI__SPACE_KEYS];
   DVI_TRY(

@@ -9,6 +9,8 @@
 
 enum { LONGEST_SHOWN = 80 };
 
+const char *const dvi__no_yes[] = {"no", "yes", NULL};
+
 void dvi__note_add(dvi__note *note, const char *format, ...)
 {
   va_list arguments;
@@ -61,12 +63,17 @@ static dvi_status refuse_key(const dvi__spec_form *form, word name)
                    shown(name), name.text, known);
 }
 
-static dvi_status read_switch(const char *kind, const dvi__space_key *key, word given, int *value)
+static dvi_status read_word(const char *kind, const dvi__space_key *key, word given, int *value)
 {
-  *value = same_word(given, "yes");
-  if (*value || same_word(given, "no")) return DVI_OK;
-  return dvi__fail(DVI_BAD_OPTION, "space: %s: %s=%.*s; yes and no are possible", kind, key->name,
-                   shown(given), given.text);
+  char known[DVI__SENTENCE_SIZE] = "";
+  dvi__note note = {known, sizeof known, 0};
+  for (int i = 0; key->word[i] != NULL; i++) {
+    *value = i;
+    if (same_word(given, key->word[i])) return DVI_OK;
+    dvi__note_add(&note, "%s%s", i > 0 ? " and " : "", key->word[i]);
+  }
+  return dvi__fail(DVI_BAD_OPTION, "space: %s: %s=%.*s; %s are possible", kind, key->name,
+                   shown(given), given.text, known);
 }
 
 static dvi_status read_number(const char *kind, const dvi__space_key *key, word given, int *value)
@@ -92,7 +99,7 @@ static dvi_status assign(const dvi__spec_form *form, word name, word given, unsi
     if (*seen & 1U << k)
       return dvi__fail(DVI_BAD_OPTION, "space: %s: %s is given twice", form->name, key->name);
     *seen |= 1U << k;
-    return (key->is_switch ? read_switch : read_number)(form->name, key, given, &value[k]);
+    return (key->word != NULL ? read_word : read_number)(form->name, key, given, &value[k]);
   }
   return refuse_key(form, name);
 }

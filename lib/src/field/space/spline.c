@@ -77,9 +77,9 @@ static void spline_local(const dvi__line *line, int order, int64_t cell, double 
 
 const dvi__kind dvi__spline = {
     .form = {.name = "spline",
-             .key = {[DEGREE] = {"degree", 1, DEGREE_MOST, 3, 0},
-                     [CELLS] = {"cells", 1, CELLS_MOST, 0, 0},
-                     [POINTS] = {"points", 1, POINTS_MOST, 0, 0}}},
+             .key = {[DEGREE] = {"degree", 1, DEGREE_MOST, 3, NULL},
+                     [CELLS] = {"cells", 1, CELLS_MOST, 0, NULL},
+                     [POINTS] = {"points", 1, POINTS_MOST, 0, NULL}}},
     .create = spline_create,
     .local = spline_local,
     .explain = dvi__explain_gauss,

@@ -152,6 +152,7 @@ dvi_status dvi__bordered_create(const dvi__stepper *self, const dvi__action_spac
 {
   b->element = (dvi__stepper){
       .method = self->method, .system = self->system, .counters = self->counters};
+  DVI_TRY(dvi__system_has_hessians(self->system));
   DVI_TRY(dvi__element_create(&b->element, space, DVI__SOLVER_AUTO));
   b->action = dvi__element_action(&b->element);
   b->rows = dvi__action_unknowns(b->action);

@@ -61,6 +61,13 @@ static int has_multipliers(const dvi__element *own)
 static void explain_ladder(dvi__element *own, dvi__text *text)
 {
   const char *name = dvi__solver_choice(own->choice), *last = "a path followed from shorter steps";
+  if (own->without_hessian != NULL) {
+    dvi__text_add(text,
+                  "solver: %s: fixed point alone, for potential '%s' is declared without a "
+                  "Hessian\n",
+                  name, own->without_hessian);
+    return;
+  }
   if (!dvi__element_is_ladder(own)) {
     const char *why = has_multipliers(own) ? "for multipliers are unknowns" : "as asked";
     dvi__text_add(text, "solver: %s, %s; what it cannot solve goes on to %s\n", name, why, last);
@@ -94,7 +101,9 @@ void dvi__element_explain(const dvi__stepper *self, dvi__text *text)
   const int general = (self->system->terms & DVI__LAGRANGIAN) != 0;
   const double s = dvi__action_space_of(own->action).degree;
   dvi__text_add(text, "kernel: implicit; %d unknowns a step, ", dvi__action_unknowns(own->action));
-  if (dvi__action_prepare_hessians(own->action) == DVI_OK)
+  if (own->without_hessian != NULL)
+    dvi__text_add(text, "no Jacobian\n");
+  else if (dvi__action_prepare_hessians(own->action) == DVI_OK)
     dvi__explain_entries(dvi__action_unknowns(own->action),
                          s * s * dvi__pattern_entries(dvi__action_coupling(own->action)), text);
   else
@@ -102,9 +111,12 @@ void dvi__element_explain(const dvi__stepper *self, dvi__text *text)
   dvi__text_add(
       text, "kinetic part: %s\n",
       general ? "general Lagrangian; its velocity Hessian is evaluated once a step"
+      : dvi__action_has_preconditioner(own->action)
+          ? "constant mass without coupling: fixed point iteration on the positions at the nodes, "
+            "in which quadratic potentials with a diagonal Hessian are implicit"
       : dvi__action_has_fixed_point(own->action)
           ? "constant mass without coupling: fixed point iteration on the positions at the nodes"
           : "constant mass");
   explain_ladder(own, text);
-  explain_newton(own, text);
+  if (own->without_hessian == NULL) explain_newton(own, text);
 }

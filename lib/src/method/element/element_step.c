@@ -102,6 +102,7 @@ static int element_allocate(dvi__stepper *self, dvi__element *own)
  * full set of eigenvectors the ladder goes without it. */
 static dvi_status element_decouple(dvi__stepper *self, dvi__element *own)
 {
+  if (own->without_hessian != NULL) return DVI_OK;
   if (!dvi__element_is_ladder(own) && own->choice != DVI__SOLVER_SIMPLIFIED) return DVI_OK;
   const dvi_status status = dvi__decoupled_create(own->action, self->counters, &own->decoupled);
   if (status != DVI_SINGULAR) return status;
@@ -159,6 +160,19 @@ static dvi_status element_renew_solver(dvi__stepper *self)
   return element_create_solver(self, own);
 }
 
+/* Leave out what needs Hessians where a potential has none. Solvers that do refuse it. */
+static dvi_status element_refuse_hessians(dvi__stepper *self, dvi__element *own)
+{
+  own->without_hessian = dvi__system_without_hessian(self->system);
+  if (own->without_hessian == NULL) return DVI_OK;
+  self->follows = self->late_hessians = 0;
+  if (own->choice == DVI__SOLVER_AUTO || own->choice == DVI__SOLVER_FIXED_POINT) return DVI_OK;
+  return dvi__fail(DVI_UNSUPPORTED,
+                   "%s: solver=%s needs the Hessian of potential '%s', which is declared without "
+                   "one; auto and fixed-point need none",
+                   self->method->name, dvi__solver_choice(own->choice), own->without_hessian);
+}
+
 dvi_status dvi__element_create(dvi__stepper *self, const dvi__action_space *space, int solver)
 {
   dvi__element *own = self->own = DVI_NEW(dvi__element, 1);
@@ -169,7 +183,9 @@ dvi_status dvi__element_create(dvi__stepper *self, const dvi__action_space *spac
   self->late_hessians = 1;
   own->choice = solver;
   own->counters = self->counters;
+  DVI_TRY(element_refuse_hessians(self, own));
   DVI_TRY(dvi__action_create(self->system, space, self->counters, &own->action));
+  self->bound = dvi__action_has_preconditioner(own->action);
   own->has_forces = self->system->force_count > 0;
   own->definite = dvi__element_is_definite(self->system, dvi__action_evaluator(own->action));
   self->weighs_damping = self->system->damping > 0;
@@ -263,7 +279,7 @@ static dvi_status element_solve_by(dvi__stepper *self, const dvi__element_place 
 {
   dvi__element *own = self->own;
   const double size = dvi__largest((size_t)self->system->n, at->q);
-  const int patient = own->choice == DVI__SOLVER_FIXED_POINT;
+  const int patient = own->choice == DVI__SOLVER_FIXED_POINT || own->without_hessian != NULL;
   own->forces_of = rung == DVI__FIXED_POINT && at->last_g != NULL ? at : NULL;
   if (own->forces_of == NULL) DVI_TRY(element_guess(self, at, Y));
   if (own->centred)
@@ -316,6 +332,19 @@ static dvi_status element_solve_simplified(dvi__stepper *self, const dvi__elemen
   return status;
 }
 
+/* Solve by the only rung without Hessians. */
+static dvi_status element_solve_without(dvi__stepper *self, const dvi__element_place *at, double *Y,
+                                        dvi__solve_report *report)
+{
+  const dvi_status status = element_solve_by(self, at, DVI__FIXED_POINT, Y, report);
+  if (status <= 0) return status;
+  return dvi__fail(status,
+                   "fixed-point iteration does not converge (last change %.1e), and potential '%s' "
+                   "is declared without the Hessian of other solvers; try a step below %.3g",
+                   report->correction, ((const dvi__element *)self->own)->without_hessian,
+                   fabs(at->h) / 2);
+}
+
 /* Solve the element at its place, from a first guess, by the rung that the user or the measured
  * contraction chooses. */
 static dvi_status element_solve(dvi__stepper *self, const dvi__element_place *at, double *Y,
@@ -323,6 +352,7 @@ static dvi_status element_solve(dvi__stepper *self, const dvi__element_place *at
 {
   dvi__element *own = self->own;
   dvi__element_put(own, at, at->h);
+  if (own->without_hessian != NULL) return element_solve_without(self, at, Y, report);
   if ((!own->keeps_whole || !dvi__element_is_ladder(own)) &&
       element_is_due(own, DVI__SOLVER_FIXED_POINT, &self->memory[DVI__NEWTON_STEPS])) {
     const dvi_status status = element_solve_by(self, at, DVI__FIXED_POINT, Y, report);
@@ -399,7 +429,7 @@ static dvi_status element_find_path(dvi__stepper *self, const dvi__element_place
 {
   dvi__element *own = self->own;
   const dvi_status status = self->follow ? DVI_OK : element_solve(self, at, own->Y, report);
-  if (status < 0) return status;
+  if (status < 0 || own->without_hessian != NULL) return status;
   if (status != DVI_OK || self->follow || (own->centred && dvi__element_strays(self, at)))
     return dvi__element_follow(self, at, status, own->Y);
   if (!own->centred) self->doubt = dvi__element_doubt(self, at, report);

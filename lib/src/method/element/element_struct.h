@@ -42,6 +42,9 @@ typedef struct dvi__element {
   /* symmetric Jacobians, and real parts of them, are definite for short steps, because the mass is
    * constant and positive */
   int definite;
+  /* a potential without a Hessian, so that fixed-point iteration is the only rung; its name, or
+   * NULL */
+  const char *without_hessian;
   int has_forces; /* forces without a potential make Jacobians that are not symmetric */
   dvi__solver *solver;
   dvi__newton_form newton;

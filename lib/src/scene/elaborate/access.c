@@ -15,6 +15,16 @@ static bool is_function(const char *name)
   return k < dvi__word_count();
 }
 
+/* Tell if a name is written as u_x for a derivative of the field u. */
+static bool is_subscript(const dvi__context *c, const char *name)
+{
+  const dvi__jets *jets = c->scene->jets;
+  const char *axis = strrchr(name, '_');
+  for (int d = 0; jets != NULL && axis != NULL && d < jets->dimension; d++)
+    if (axis > name && strcmp(axis + 1, jets->axis[d]) == 0) return true;
+  return false;
+}
+
 /* Complain of a name that is unknown, or not known yet. Expressions of parameters alone are read
  * before there are coordinates and definitions. */
 static dvi__value refuse_unknown_name(dvi__context *c, const dvi__expression *e)
@@ -24,6 +34,10 @@ static dvi__value refuse_unknown_name(dvi__context *c, const dvi__expression *e)
   if (is_function(e->name))
     return dvi__refused(
         dvi__refuse(c, e->span, "'%s' is a function; write %s(..)", e->name, e->name));
+  if (is_subscript(c, e->name))
+    return dvi__refused(dvi__refuse(c, e->span, "there is no '%s'; a derivative is d(%.*s,%s)",
+                                    e->name, (int)(strrchr(e->name, '_') - e->name), e->name,
+                                    strrchr(e->name, '_') + 1));
   for (int k = 0; k < 3; k++) {
     const dvi__tree *names = dvi__tree_find(c->scene->tree, section[k]);
     if (names == NULL || names->kind != DVI__MAPPING || dvi__tree_find(names, e->name) == NULL)

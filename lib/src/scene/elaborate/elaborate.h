@@ -37,6 +37,15 @@ dvi__value dvi__coordinate_value(dvi__context *c, const dvi__coordinate *x,
  * Returns false if it has no momentum of its own. */
 bool dvi__input_velocity(dvi__context *c, int input, dvi__node *rate);
 bool dvi__input_momentum(dvi__context *c, int input, dvi__node *momentum);
+/* Derive a value by the chain rule, with the derivatives of its inputs by a rule. The rule refuses
+ * an input by returning false. `axis` is the rule's. */
+typedef bool dvi__input_rule(dvi__context *c, int input, dvi__span span, int axis, dvi__node *to);
+dvi__value dvi__chain_rule(dvi__context *c, dvi__value value, dvi__span span, dvi__input_rule *rule,
+                           int axis);
+/* Tell if a call is d(..), grad(..), re(..) or im(..) in the scene of a density, and return its
+ * value. */
+bool dvi__is_word_of_field(const dvi__context *c, const dvi__expression *call);
+dvi__value dvi__field_word_value(dvi__context *c, const dvi__expression *e);
 /* Return the momenta p(x) of a whole coordinate. Returns none for an argument of another form,
  * without a complaint. */
 dvi__value dvi__whole_momentum(dvi__context *c, const dvi__expression *e);

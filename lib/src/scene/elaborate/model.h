@@ -36,6 +36,21 @@ typedef struct dvi__scene_term {
   struct dvi__scene_term *next;
 } dvi__scene_term;
 
+/* While the sections of a density are read, the coordinates of the scene are those of one place:
+ * its position, and the derivatives in space of each component of the fields, to some order along
+ * each axis. Those of order 0, the components themselves, come first. */
+enum { DVI__JET_ORDER_MAX = 4 };
+typedef struct dvi__jets {
+  int dimension, components;
+  const char *axis[3];
+} dvi__jets;
+
+/* Return the number of a derivative, with `order` [3] along each axis, and find component and
+ * orders of a number. Returns false for a position. dvi__jet_count counts all numbers. */
+int dvi__jet_number(const dvi__jets *jets, int component, const int *order);
+bool dvi__jet_at(const dvi__jets *jets, int number, int *component, int *order);
+int dvi__jet_count(const dvi__jets *jets);
+
 struct dvi_scene {
   dvi__ledger ledger;
   dvi__arena arena;
@@ -88,7 +103,9 @@ struct dvi_scene {
   dvi__scene_term *functions;
   /* the term from which a constant mass was read, with A(t,q).q' of a vector potential, or NULL */
   const dvi__scene_term *kinetic;
-  struct dvi__scene_field *field; /* NULL without a mesh (scene/field) */
+  struct dvi__scene_field *field;     /* NULL without a mesh (scene/field) */
+  struct dvi__scene_density *density; /* NULL without a density (scene/density) */
+  const dvi__jets *jets;              /* while its sections are read, and NULL otherwise */
   dvi_system *system;
   double *q, *v, *p;
   double *final_q, *final_v, *final_p; /* the end of a control problem, or NULL */

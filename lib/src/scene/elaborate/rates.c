@@ -38,11 +38,20 @@ static dvi__node from_momentum(dvi__context *c, int input, dvi__span span)
   return dvi__apply(c->graph, DVI__OP_DIVIDE, p, m);
 }
 
-/* Find the rate of an input. That of a coordinate is its velocity, of the time 1, of data 0. */
-static bool input_rate(dvi__context *c, int input, dvi__span span, dvi__node *rate)
+/* Tell if an input is the position of a density, which does not move. */
+static bool is_position(const dvi__context *c, const dvi__kernel_input *of)
+{
+  return c->scene->jets != NULL && of->block == DVI__COORDINATES &&
+         dvi__input_number(of, 0) < c->scene->jets->dimension;
+}
+
+/* Find the rate of an input. That of a coordinate is its velocity, of the time 1, of data and of
+ * positions 0. */
+static bool input_rate(dvi__context *c, int input, dvi__span span, int unused, dvi__node *rate)
 {
   const dvi__kernel_input *of = &c->input[input];
-  if (of->is_data)
+  (void)unused;
+  if (of->is_data || is_position(c, of))
     *rate = dvi__constant(c->graph, 0);
   else if (of->block == DVI__TIME)
     *rate = dvi__constant(c->graph, 1);
@@ -58,8 +67,8 @@ static bool input_rate(dvi__context *c, int input, dvi__span span, dvi__node *ra
 }
 
 /* Find the rates of all inputs that occur in a value. Others are 0. */
-static bool input_rates(dvi__context *c, dvi__value value, dvi__span span, int count, char *used,
-                        dvi__node *rate)
+static bool input_rates(dvi__context *c, dvi__value value, dvi__span span, int count,
+                        dvi__input_rule *rule, int axis, char *used, dvi__node *rate)
 {
   const int size = dvi__value_size(value);
   dvi__node *root = dvi__heap_take((size_t)size, sizeof *root);
@@ -70,19 +79,20 @@ static bool input_rates(dvi__context *c, dvi__value value, dvi__span span, int c
   const dvi__node zero = dvi__constant(c->graph, 0);
   for (int i = 0; i < count; i++) {
     rate[i] = zero;
-    if (used[i] && !input_rate(c, i, span, &rate[i])) return false;
+    if (used[i] && !rule(c, i, span, axis, &rate[i])) return false;
   }
   return true;
 }
 
-static dvi__value chain_rule(dvi__context *c, dvi__value value, dvi__span span)
+dvi__value dvi__chain_rule(dvi__context *c, dvi__value value, dvi__span span, dvi__input_rule *rule,
+                           int axis)
 {
   const int count = c->input_count;
   char *used = dvi__heap_take((size_t)count + 1, 1);
   dvi__node *rate = dvi__heap_take((size_t)count + 1, sizeof *rate);
   dvi__value result = dvi__value_make(c, value.shape.rank, value.shape.rows, value.shape.columns);
   if (used == NULL || rate == NULL) result = dvi__refused(dvi__scene_no_memory(c->scene));
-  if (!dvi__failed(result) && !input_rates(c, value, span, count, used, rate))
+  if (!dvi__failed(result) && !input_rates(c, value, span, count, rule, axis, used, rate))
     result = DVI__NO_VALUE;
   if (!dvi__failed(result) && result.shape.rank == 0)
     dvi__rates(c->graph, 1, &value.one, count, rate, &result.one);
@@ -104,7 +114,7 @@ static bool find_siblings(dvi__context *c, dvi__value value, dvi__value *result)
   for (int i = 0; i < size && !dvi__failed(*result); i++) {
     const dvi__graph_node *node = &c->graph->node[dvi__value_at(value, i)];
     if (node->op != DVI__OP_INPUT || c->input[node->a].is_data ||
-        c->input[node->a].block != DVI__COORDINATES)
+        c->input[node->a].block != DVI__COORDINATES || is_position(c, &c->input[node->a]))
       return false;
     dvi__node *to = result->node == NULL ? &result->one : &result->node[i];
     const int input = node->a;
@@ -124,7 +134,7 @@ dvi__value dvi__rate_value(dvi__context *c, const dvi__expression *e)
   const dvi__value value = dvi__elaborate(c, e->part[0]);
   if (dvi__failed(value)) return DVI__NO_VALUE;
   if ((c->may & DVI__MENTIONS_P) == 0 && find_siblings(c, value, &result)) return result;
-  return chain_rule(c, value, e->span);
+  return dvi__chain_rule(c, value, e->span, input_rate, 0);
 }
 
 dvi__value dvi__momentum_value(dvi__context *c, const dvi__expression *e)

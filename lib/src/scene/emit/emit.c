@@ -127,6 +127,7 @@ dvi_status dvi__emit_end(dvi__emitter *out)
  * than the few points there are. DVI_LANES may be defined, as nothing, for a program that is
  * compiled sooner and runs on one instruction set. */
 static const char *const beginning[] = {
+    "#include <dvi/sines.h>\n"
     "#include <float.h>\n"
     "#include <math.h>\n"
     "#include <stddef.h>\n"

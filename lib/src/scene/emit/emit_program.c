@@ -126,9 +126,9 @@ static void emit_sine_and_cosine(const emission *e, const dvi__instruction *at)
 {
   const int angle = name_of_row(e, at->a);
   e->name[at->to] = begin_definition(e);
-  dvi__emit(e->out, "sin(r%d);\n", angle);
+  dvi__emit(e->out, "dvi_sin(r%d);\n", angle);
   e->name[at->b] = begin_definition(e);
-  dvi__emit(e->out, "cos(r%d);\n", angle);
+  dvi__emit(e->out, "dvi_cos(r%d);\n", angle);
 }
 
 static int emit_instruction(const emission *e, const dvi__instruction *at)

@@ -346,7 +346,8 @@ dvi_status dvi_scene_emit_c(const dvi_scene *scene, const char *name,
 {
   if (scene == NULL || name == NULL || write == NULL) return DVI_BAD_ARGUMENT;
   if (!dvi__is_identifier(name) || strlen(name) > IDENTIFIER_MAX) return DVI_BAD_ARGUMENT;
-  if (scene->control_count > 0 || scene->field != NULL) return DVI_UNSUPPORTED;
+  if (scene->control_count > 0 || scene->field != NULL || scene->density != NULL)
+    return DVI_UNSUPPORTED;
   if (scene->terms.contact_count > 0) return DVI_UNSUPPORTED;
   dvi_status status = scene->plan.method != NULL ? check_method(scene) : DVI_OK;
   if (status != DVI_OK) return status;

@@ -158,6 +158,7 @@ static bool read_condition(dvi_scene *scene, const char *part, dvi__span span,
 bool dvi__read_boundary(dvi_scene *scene, const dvi__tree *section)
 {
   struct dvi__scene_field *field = scene->field;
+  if (scene->density != NULL) return dvi__density_read_boundary(scene, section);
   if (field->maxwell != NULL) return dvi__maxwell_read_walls(scene, section);
   field->condition = dvi__arena_take(&scene->arena, (size_t)section->count + 1,
                                      sizeof *field->condition);

@@ -115,22 +115,6 @@ bool dvi__is_mechanical_column(const dvi_scene *scene, const char *name)
   return number >= 1 && number <= scene->nv;
 }
 
-/* A run shows energy, momenta and probes. */
-bool dvi__choose_field_columns(dvi_scene *scene)
-{
-  const int momenta = scene->terms.symmetry_count,
-            count = 1 + momenta + scene->terms.invariant_count;
-  const char **column = dvi__arena_take(&scene->arena, (size_t)count, sizeof *column);
-  if (column == NULL) return dvi__scene_no_memory(scene);
-  column[0] = "energy";
-  for (int i = 1; i < count; i++)
-    column[i] = i <= momenta ? scene->terms.symmetries[i - 1].name
-                             : scene->terms.invariants[i - 1 - momenta].name;
-  scene->plan.column = column;
-  scene->plan.column_count = count;
-  return true;
-}
-
 /* ---- the field ---- */
 
 static dvi_status make_field(dvi_scene *scene)

@@ -11,7 +11,7 @@
 #include "scene/sections/sections.h"
 #include "text/heap.h"
 
-struct dvi__integral {
+struct dvi__field_integral {
   dvi__place *function;
   const char *part;
   const dvi__tree *tree;
@@ -21,9 +21,9 @@ struct dvi__integral {
   int *unknown;           /* [vertices] number among the unknowns, or -1 */
 };
 
-int dvi__integral_value(double t, const double *q, const double *p, double *value, void *user)
+int dvi__field_integral_value(double t, const double *q, const double *p, double *value, void *user)
 {
-  const dvi__integral *a = user;
+  const dvi__field_integral *a = user;
   int failed = 0;
   (void)t, (void)p;
   *value = 0;
@@ -37,11 +37,11 @@ int dvi__integral_value(double t, const double *q, const double *p, double *valu
   return failed;
 }
 
-bool dvi__integral_read(dvi_scene *scene, const dvi__tree *tree, const dvi__tree *over,
-                        dvi__integral **integral)
+bool dvi__field_integral_read(dvi_scene *scene, const dvi__tree *tree, const dvi__tree *over,
+                              dvi__field_integral **integral)
 {
   const dvi_mesh *mesh = scene->field->mesh;
-  dvi__integral *a = dvi__arena_take(&scene->arena, 1, sizeof *a);
+  dvi__field_integral *a = dvi__arena_take(&scene->arena, 1, sizeof *a);
   int64_t count;
   if (a == NULL) return dvi__scene_no_memory(scene);
   if (over != NULL && !dvi__want_text(scene, over, "a part of the mesh")) return false;
@@ -55,7 +55,8 @@ bool dvi__integral_read(dvi_scene *scene, const dvi__tree *tree, const dvi__tree
 }
 
 /* The shares are the masses of a material that only the part has. */
-static dvi_status weigh(const dvi_mesh *mesh, dvi_star_kind kind, dvi__integral *a, double *density)
+static dvi_status weigh(const dvi_mesh *mesh, dvi_star_kind kind, dvi__field_integral *a,
+                        double *density)
 {
   const double *const factor[DVI_MESH_DIMENSION_MAX + 1] = {density};
   const dvi_star_options options = {.size = sizeof options,
@@ -74,7 +75,7 @@ static dvi_status weigh(const dvi_mesh *mesh, dvi_star_kind kind, dvi__integral 
   return status;
 }
 
-bool dvi__integral_make(dvi_scene *scene, dvi__integral *a)
+bool dvi__field_integral_make(dvi_scene *scene, dvi__field_integral *a)
 {
   const struct dvi__scene_field *f = scene->field;
   int64_t unknowns;

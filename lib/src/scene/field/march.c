@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "scene/field/maxwell.h"
+#include "scene/sections/sections.h"
 #include "text/heap.h"
 
 int dvi_scene_marches(const dvi_scene *scene, const char *method)
@@ -97,6 +98,7 @@ const char *dvi_scene_grid_only(const dvi_scene *scene)
 
 const dvi_mesh *dvi_scene_mesh(dvi_scene *scene)
 {
+  if (scene != NULL && scene->density != NULL) return dvi__density_mesh(scene);
   if (scene == NULL || scene->field == NULL) return NULL;
   struct dvi__scene_field *f = scene->field;
   if (f->mesh != NULL) return f->mesh;

@@ -145,6 +145,14 @@ static bool name_place(dvi_scene *scene, const dvi__tree *section)
   return true;
 }
 
+/* A density takes the mesh, and the scene has no field of this room. */
+static bool hand_over(dvi_scene *scene, const dvi__tree *section)
+{
+  dvi_mesh *mesh = scene->field->mesh;
+  scene->field = NULL;
+  return dvi__density_take_mesh(scene, section, mesh);
+}
+
 bool dvi__read_mesh(dvi_scene *scene, const dvi__tree *section)
 {
   if (!dvi__want_mapping(scene, section, "mesh")) return false;
@@ -159,6 +167,7 @@ bool dvi__read_mesh(dvi_scene *scene, const dvi__tree *section)
   if (!dvi__maxwell_begin(scene)) return false;
   if (!(generator != NULL ? generate(scene, section, generator) : read_file(scene, section, file)))
     return false;
+  if (dvi__has_density(scene)) return hand_over(scene, section);
   if (scene->field->mesh != NULL) {
     scene->field->space = dvi_mesh_space(scene->field->mesh);
     scene->field->dimension = dvi_mesh_dimension(scene->field->mesh);

@@ -14,7 +14,7 @@ struct dvi__probe {
   const char *name;
   dvi__span span;      /* of the name */
   const dvi__tree *at; /* NULL for an integral */
-  dvi__integral *integral;
+  dvi__field_integral *integral;
   double point[DVI__PLACE_SPACE];
   int count;
   int unknown[VERTICES_MOST];
@@ -50,11 +50,12 @@ static bool read_probe(dvi_scene *scene, const dvi__tree *key, const dvi__tree *
                              "'{integral: u^2, over: all}'");
   if (integral == NULL)
     return dvi__point_read(scene, probe->at, scene->field->space, "a point", probe->point);
-  return dvi__integral_read(scene, integral, over, &probe->integral);
+  return dvi__field_integral_read(scene, integral, over, &probe->integral);
 }
 
 bool dvi__read_probes(dvi_scene *scene, const dvi__tree *section)
 {
+  if (scene->density != NULL) return dvi__density_read_probes(scene, section);
   if (scene->field->maxwell != NULL) return dvi__maxwell_read_probes(scene, section);
   if (!dvi__want_mapping(scene, section, "probes")) return false;
   struct dvi__probe *probe = dvi__arena_take(&scene->arena, (size_t)section->count + 1,
@@ -139,10 +140,11 @@ bool dvi__probes_make(dvi_scene *scene)
   for (int i = 0; i < f->probes && good; i++) {
     struct dvi__probe *probe = f->probe + i;
     const bool is_integral = probe->integral != NULL;
-    good = name_is_new(scene, probe) && (is_integral ? dvi__integral_make(scene, probe->integral)
-                                                     : place_probe(scene, probe, u));
+    good = name_is_new(scene, probe) &&
+           (is_integral ? dvi__field_integral_make(scene, probe->integral)
+                        : place_probe(scene, probe, u));
     list[i] = (dvi_invariant){.name = probe->name,
-                              .value = is_integral ? dvi__integral_value : probe_value,
+                              .value = is_integral ? dvi__field_integral_value : probe_value,
                               .user = is_integral ? (void *)probe->integral : probe};
   }
   dvi__heap_free(u);

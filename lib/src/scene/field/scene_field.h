@@ -46,11 +46,12 @@ struct dvi__scene_field {
 
 /* Read and make an integral over a part of cells, all if `over` is NULL, and the callback of its
  * value, whose `user` is the integral. */
-typedef struct dvi__integral dvi__integral;
-bool dvi__integral_read(dvi_scene *scene, const dvi__tree *tree, const dvi__tree *over,
-                        dvi__integral **integral);
-bool dvi__integral_make(dvi_scene *scene, dvi__integral *integral);
-int dvi__integral_value(double t, const double *q, const double *p, double *value, void *user);
+typedef struct dvi__field_integral dvi__field_integral;
+bool dvi__field_integral_read(dvi_scene *scene, const dvi__tree *tree, const dvi__tree *over,
+                              dvi__field_integral **integral);
+bool dvi__field_integral_make(dvi_scene *scene, dvi__field_integral *integral);
+int dvi__field_integral_value(double t, const double *q, const double *p, double *value,
+                              void *user);
 
 /* Take an expression or, with `count` above 1, a list of so many as a function of place. */
 typedef struct dvi__place_vector {
@@ -94,9 +95,6 @@ bool dvi__is_unknown(const char *name, char letter);
 
 /* What marches observe beside the probes. The last one is NULL. */
 extern const char *const dvi__observable[];
-
-/* Let a run show energy, momenta and probes. */
-bool dvi__choose_field_columns(dvi_scene *scene);
 
 /* Place the probes, and declare them as what is watched. */
 bool dvi__probes_make(dvi_scene *scene);

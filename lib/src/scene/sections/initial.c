@@ -218,6 +218,7 @@ bool dvi__read_initial(dvi_scene *scene, const dvi__tree *section)
 {
   const size_t n = (size_t)scene->n, nv = (size_t)scene->nv;
   scene->reads = DVI__IN_START;
+  if (scene->density != NULL) return dvi__density_read_start(scene, section);
   if (scene->field != NULL) return dvi__read_field_start(scene, section);
   if (!dvi__want_mapping(scene, section, "initial")) return false;
   double *numbers = dvi__arena_take(&scene->arena, n + 2 * nv, sizeof *numbers);

@@ -15,7 +15,9 @@ const dvi__tree *dvi__motion_section(const dvi_scene *scene)
   const dvi__tree *found = NULL;
   for (int k = 0; k < WAYS && found == NULL; k++)
     found = dvi__tree_find(scene->tree, ways_to_move[k]);
-  return found != NULL ? found : dvi__tree_find(scene->tree, "field");
+  static const char *const of_field[] = {"field", "density", "schroedinger"};
+  for (int k = 0; k < 3 && found == NULL; k++) found = dvi__tree_find(scene->tree, of_field[k]);
+  return found;
 }
 
 bool dvi__check_motion_section(dvi_scene *scene)

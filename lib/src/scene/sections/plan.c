@@ -55,7 +55,7 @@ static bool read_fraction(dvi_scene *scene, const dvi__tree *section)
 
 bool dvi__read_step(dvi_scene *scene, const dvi__tree *section)
 {
-  if (dvi__tree_find(scene->tree, "mesh") != NULL) {
+  if (dvi__is_of_field(scene)) {
     if (section->kind == DVI__MAPPING) return read_fraction(scene, section);
     if (section->kind == DVI__SEQUENCE || is_unknown_name(scene, section->text))
       return refuse_step(scene, section);

@@ -24,6 +24,13 @@ bool dvi__want_name(dvi_scene *scene, const char *text, dvi__span span)
                            text);
 }
 
+/* Tell if a key is the rest of a text that YAML has cut at a comma, as of {a: f(x,y)}. */
+static bool is_rest(const char *key)
+{
+  const char *close = strpbrk(key, ")]");
+  return close != NULL && (strpbrk(key, "([") == NULL || strpbrk(key, "([") > close);
+}
+
 bool dvi__want_keys(dvi_scene *scene, const dvi__tree *mapping, const char *what, int count,
                     const char *const *known)
 {
@@ -34,7 +41,9 @@ bool dvi__want_keys(dvi_scene *scene, const dvi__tree *mapping, const char *what
     if (k == count)
       return dvi__scene_refuse(
           scene, mapping->key[i]->span, "%s has no '%s'%s", what, mapping->key[i]->text,
-          dvi__nearest_or_all(mapping->key[i]->text, count, known, hint, sizeof hint));
+          is_rest(mapping->key[i]->text)
+              ? "; within {..} or [..] a text with commas needs quotes"
+              : dvi__nearest_or_all(mapping->key[i]->text, count, known, hint, sizeof hint));
   }
   return true;
 }

@@ -81,6 +81,58 @@ static const char *const field_sections[] = {
     "until",  "initial", "parameters",   "definitions", "sweep",    "report", "damping"};
 enum { FIELD_SECTIONS = sizeof field_sections / sizeof *field_sections, OF_FIELD_ALONE = 11 };
 
+/* Sections of a scene of a density, those first that no other scene has. */
+static const char *const density_sections[] = {
+    "domain",   "space",      "fields", "density", "schroedinger", "mesh",
+    "boundary", "probes",     "title",  "method",  "step",         "until",
+    "initial",  "parameters", "sweep",  "damping", "report",       "definitions"};
+enum {
+  DENSITY_SECTIONS = sizeof density_sections / sizeof *density_sections,
+  OF_DENSITY_ALONE = 5
+};
+
+static bool is_density_section(const char *name, int count)
+{
+  for (int k = 0; k < count; k++)
+    if (strcmp(name, density_sections[k]) == 0) return true;
+  return false;
+}
+
+bool dvi__has_density(const dvi_scene *scene)
+{
+  return dvi__tree_find(scene->tree, "density") != NULL ||
+         dvi__tree_find(scene->tree, "schroedinger") != NULL;
+}
+
+/* A density needs a domain or a mesh, and has no section of anything else. */
+static bool registry_check_density(dvi_scene *scene)
+{
+  const dvi__tree *tree = scene->tree, *domain = dvi__tree_find(tree, "domain"),
+                  *mesh = dvi__tree_find(tree, "mesh"), *density = dvi__tree_find(tree, "density"),
+                  *short_form = dvi__tree_find(tree, "schroedinger");
+  for (int i = 0; i < tree->count && !dvi__has_density(scene); i++)
+    if (is_density_section(tree->key[i]->text, OF_DENSITY_ALONE))
+      return dvi__scene_refuse(scene, tree->key[i]->span,
+                               "'%s' is of fields with a density, and the section 'density' is "
+                               "missing, as in 'density: u'^2/2 - d(u,x)^2/2'",
+                               tree->key[i]->text);
+  if (!dvi__has_density(scene)) return true;
+  if (density != NULL && short_form != NULL)
+    return dvi__scene_refuse(scene, short_form->span,
+                             "'schroedinger' is a density; beside it there is no other one");
+  if (domain != NULL && mesh != NULL)
+    return dvi__scene_refuse(scene, mesh->span,
+                             "beside 'domain' there is no mesh: fields live on one of them");
+  if (domain == NULL && mesh == NULL)
+    return dvi__scene_refuse(scene, (density != NULL ? density : short_form)->span,
+                             "fields live on a domain, as in 'domain: {x: [0, 1]}', or on a mesh");
+  for (int i = 0; i < tree->count; i++)
+    if (!is_density_section(tree->key[i]->text, DENSITY_SECTIONS))
+      return dvi__scene_refuse(scene, tree->key[i]->span,
+                               "a scene with a density has no section '%s'", tree->key[i]->text);
+  return true;
+}
+
 static int find_field_section(const char *name, int count)
 {
   for (int k = 0; k < count; k++)
@@ -92,6 +144,7 @@ static int find_field_section(const char *name, int count)
 static bool registry_check_field(dvi_scene *scene)
 {
   const dvi__tree *tree = scene->tree, *mesh = dvi__tree_find(tree, "mesh");
+  if (dvi__has_density(scene)) return true;
   if (mesh != NULL && dvi__tree_find(tree, "field") == NULL)
     return dvi__scene_refuse(scene, mesh->span,
                              "beside 'mesh' the section 'field' is missing, as "
@@ -108,15 +161,20 @@ static bool registry_check_field(dvi_scene *scene)
   return true;
 }
 
-/* A static problem on a mesh has neither steps nor a start. */
+bool dvi__is_of_field(const dvi_scene *scene)
+{
+  return dvi__tree_find(scene->tree, "mesh") != NULL || dvi__has_density(scene);
+}
+
+/* A static problem of a field has neither steps nor a start. */
 static bool is_required(const dvi_scene *scene, const section *s)
 {
-  return s->presence == REQUIRED && dvi__tree_find(scene->tree, "mesh") == NULL;
+  return s->presence == REQUIRED && !dvi__is_of_field(scene);
 }
 
 static bool registry_check_presence(dvi_scene *scene)
 {
-  if (!registry_check_field(scene)) return false;
+  if (!registry_check_density(scene) || !registry_check_field(scene)) return false;
   for (int k = 0; k < SECTIONS; k++) {
     const dvi__tree *found = dvi__tree_find(scene->tree, sections[k].name);
     if (found != NULL && sections[k].presence == REFUSED)
@@ -134,8 +192,7 @@ bool dvi__scene_read_tree(dvi_scene *scene)
   if (!dvi__check_section_names(scene, scene->tree) || !registry_read_first(scene) ||
       !registry_check_presence(scene))
     return false;
-  if (dvi__tree_find(scene->tree, "mesh") == NULL && !dvi__check_motion_section(scene))
-    return false;
+  if (!dvi__is_of_field(scene) && !dvi__check_motion_section(scene)) return false;
   for (int k = 0; k < SECTIONS; k++) {
     const dvi__tree *found = dvi__tree_find(scene->tree, sections[k].name);
     if (found == NULL && sections[k].presence == DEFAULTED) found = &empty;

@@ -124,6 +124,21 @@ static bool read_columns(dvi_scene *scene, const dvi__tree *columns)
   return all_columns(scene, columns);
 }
 
+bool dvi__choose_field_columns(dvi_scene *scene)
+{
+  const int momenta = scene->terms.symmetry_count,
+            count = 1 + momenta + scene->terms.invariant_count;
+  const char **column = dvi__arena_take(&scene->arena, (size_t)count, sizeof *column);
+  if (column == NULL) return dvi__scene_no_memory(scene);
+  column[0] = "energy";
+  for (int i = 1; i < count; i++)
+    column[i] = i <= momenta ? scene->terms.symmetries[i - 1].name
+                             : scene->terms.invariants[i - 1 - momenta].name;
+  scene->plan.column = column;
+  scene->plan.column_count = count;
+  return true;
+}
+
 bool dvi__read_report(dvi_scene *scene, const dvi__tree *section)
 {
   static const char *const known[] = {"every", "columns"};

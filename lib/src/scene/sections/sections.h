@@ -65,6 +65,22 @@ bool dvi__scene_place_mesh(dvi_scene *scene, dvi__span span, const char *named_f
 bool dvi__read_field_start(dvi_scene *scene, const dvi__tree *section);
 void dvi__scene_field_clear(dvi_scene *scene);
 
+/* Tell if the tree of a scene has a density, and if it has a mesh or a density. */
+bool dvi__has_density(const dvi_scene *scene);
+bool dvi__is_of_field(const dvi_scene *scene);
+
+/* Read the sections of a density that other fields have, too, and take over the mesh on which it
+ * lives (scene/density). */
+bool dvi__density_take_mesh(dvi_scene *scene, const dvi__tree *section, dvi_mesh *mesh);
+bool dvi__density_read_boundary(dvi_scene *scene, const dvi__tree *section);
+bool dvi__density_read_start(dvi_scene *scene, const dvi__tree *section);
+bool dvi__density_read_probes(dvi_scene *scene, const dvi__tree *section);
+const dvi_mesh *dvi__density_mesh(const dvi_scene *scene);
+void dvi__scene_density_clear(dvi_scene *scene);
+
+/* Let a run show energy, momenta, and what else is watched. */
+bool dvi__choose_field_columns(dvi_scene *scene);
+
 /* List the columns of a field's run, but for those of mechanical methods, if `known` is not NULL.
  * Returns how many they are. */
 int dvi__list_field_columns(const dvi_scene *scene, const char **known);
@@ -72,7 +88,7 @@ int dvi__list_field_columns(const dvi_scene *scene, const char **known);
 bool dvi__is_mechanical_column(const dvi_scene *scene, const char *name);
 
 /* Return the section that declares the motion, lagrangian, kinetic, one_form, constraints,
- * hamiltonian or field. NULL if none does. */
+ * hamiltonian, field or density. NULL if none does. */
 const dvi__tree *dvi__motion_section(const dvi_scene *scene);
 
 /* Read the motion and the start once more as functions of the parameters (dependence.c). */

@@ -85,6 +85,7 @@ struct dvi__action {
   struct dvi__constrained_rows *constrained;  /* holonomic constraints, or NULL */
   struct dvi__carried_forces *carried_forces; /* forces in charts, or NULL */
   struct dvi__nonholonomic_rows *nonholonomic;
+  struct dvi__preconditioner *preconditioner; /* of quadratic potentials, or NULL */
   /* Paths between two points (two_point.h). NULL until prepared. */
   struct {
     double *bubble;     /* [(s-1)*s] beta_m in the functions psi_k */
@@ -177,6 +178,24 @@ dvi_status dvi__action_end_on_rows(dvi__action *action, const double *Y, double 
 
 /* Set the weights of a damped action for the length h. */
 void dvi__action_damp(dvi__action *action, double h);
+
+/* The preconditioner of the fixed-point iteration (preconditioner.c). Prepare it if the system has
+ * such potentials, after the tables of fixed_point.c. DVI_NO_MEMORY. */
+dvi_status dvi__action_prepare_preconditioner(dvi__action *action);
+void dvi__action_clear_preconditioner(dvi__action *action);
+
+/* Make its inverses for the step's h. */
+void dvi__preconditioner_set_step(dvi__action *action);
+
+/* Put the nodes where K and the other forces make them, for which Z holds the sums over j of
+ * (c_i - P_ij) g_j. */
+void dvi__preconditioner_begin(dvi__action *action);
+
+/* Make one iteration with the forces -L_q at the nodes, as dvi__lanes_iterate. */
+void dvi__preconditioner_iterate(dvi__action *action, double *change, double *largest);
+
+/* Take the part of K out of the forces g [n*r] at the nodes Q. */
+void dvi__preconditioner_other_forces(const dvi__action *action, double *g);
 
 /* Free the memory of dvi__action_prepare_energy. */
 void dvi__action_clear_energy(dvi__action *action);

@@ -176,6 +176,7 @@ void dvi__action_set_step(dvi__action *a)
   for (int j = 0; j < a->r; j++) a->fixed_point.weight[j] = -a->h * a->weight[j];
   for (int j = a->r; j < a->fixed_point.stages; j++) a->fixed_point.weight[j] = a->weight[j - a->r];
   for (int i = 0; i < a->n; i++) a->fixed_point.factor[i] = a->h / a->system->mass_diagonal[i];
+  if (a->preconditioner != NULL) dvi__preconditioner_set_step(a);
 }
 
 static dvi__fixed_point fixed_point_of(const dvi__action *a)
@@ -210,6 +211,11 @@ void dvi__action_fixed_point_begin(dvi__action *a, const double *Y)
   dvi__action_set_step(a);
   const dvi__fixed_point iteration = fixed_point_of(a);
   dvi__lanes_split(&iteration);
+  if (a->preconditioner != NULL) {
+    memset(a->Z, 0, (size_t)a->n * (size_t)a->fixed_point.lanes * sizeof(double));
+    dvi__preconditioner_begin(a);
+    return;
+  }
   dvi__lanes_product(a->n, a->s, a->lanes, a->r, a->psi, Y, a->L_v);
   put_offsets(a, a->L_v, 0);
   for (size_t i = 0; i < (size_t)a->n; i++)
@@ -226,7 +232,10 @@ void dvi__action_fixed_point_continue(dvi__action *a, double ratio, const double
   dvi__lanes_split(&iteration);
   dvi__lanes_product(a->n, a->fixed_point.stages, a->fixed_point.lanes, a->fixed_point.lanes,
                      dvi__action_fixed_point_shift(a, ratio), g, a->Z);
-  dvi__lanes_begin(&iteration);
+  if (a->preconditioner != NULL)
+    dvi__preconditioner_begin(a);
+  else
+    dvi__lanes_begin(&iteration);
 }
 
 /* Evaluate forces and A at the nodes, from the places and velocities of the stages. */
@@ -253,9 +262,13 @@ dvi_status dvi__action_iterate(dvi__action *a, double *change, double *largest)
   DVI_TRY(a->fixed_point.stages > a->r
               ? evaluate_stages(a)
               : dvi__potentials_gradient(a->evaluator, a->r, a->t, a->Q, a->L_q));
+  a->iterated = 1;
+  if (a->preconditioner != NULL) {
+    dvi__preconditioner_iterate(a, change, largest);
+    return DVI_OK;
+  }
   dvi__fixed_point iteration = fixed_point_of(a);
   dvi__lanes_iterate(&iteration);
-  a->iterated = 1;
   *change = iteration.change;
   *largest = iteration.largest;
   return DVI_OK;
@@ -307,14 +320,10 @@ int dvi__action_forces_count(const dvi__action *a)
   return dvi__action_has_fixed_point(a) ? a->n * a->fixed_point.stages : 0;
 }
 
-void dvi__action_forces(const dvi__action *a, double *g)
+/* Give the forces of a path that the rows have. */
+static void forces_of_rows(const dvi__action *a, double *g)
 {
   const size_t r = (size_t)a->r, stages = (size_t)a->fixed_point.stages;
-  if (dvi__action_forces_count(a) == 0) return;
-  if (a->iterated) {
-    memcpy(g, a->fixed_point.force, (size_t)a->n * stages * sizeof(double));
-    return;
-  }
   for (size_t i = 0; i < (size_t)a->n; i++)
     for (size_t j = 0; j < r; j++) {
       const size_t at = i * r + j;
@@ -322,4 +331,15 @@ void dvi__action_forces(const dvi__action *a, double *g)
       if (stages > r)
         g[i * stages + r + j] = a->L_v[at] - a->weight[j] * a->system->mass_diagonal[i] * a->V[at];
     }
+}
+
+void dvi__action_forces(const dvi__action *a, double *g)
+{
+  const size_t numbers = (size_t)dvi__action_forces_count(a);
+  if (numbers == 0) return;
+  if (a->iterated)
+    memcpy(g, a->fixed_point.force, numbers * sizeof(double));
+  else
+    forces_of_rows(a, g);
+  if (a->preconditioner != NULL) dvi__preconditioner_other_forces(a, g);
 }

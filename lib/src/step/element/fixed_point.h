@@ -31,11 +31,16 @@ dvi_status dvi__action_prepare_fixed_point(dvi__action *action);
 
 int dvi__action_has_fixed_point(const dvi__action *action);
 
-/* Put the nodes on the path Y. */
+/* Tell whether the iteration takes quadratic potentials implicitly (preconditioner.c). */
+int dvi__action_has_preconditioner(const dvi__action *action);
+
+/* Put the nodes on the path Y. With a preconditioner they are put on the motion
+ * by its potentials alone. */
 void dvi__action_fixed_point_begin(dvi__action *action, const double *Y);
 
 /* Give the forces of the last iteration or residual, g [n*r], with a vector potential g and a
- * [n*2r]. Their number is 0 for a system of another kind, and nothing is done. */
+ * [n*2r]. Those of a preconditioner's potentials are left out. Their number is 0 for a system of
+ * another kind, and nothing is done. */
 int dvi__action_forces_count(const dvi__action *action);
 void dvi__action_forces(const dvi__action *action, double *g);
 

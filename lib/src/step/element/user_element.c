@@ -53,6 +53,7 @@ static dvi_status user_element_fill(dvi__user_element *s, const dvi_system *syst
 {
   const int functions = s->shapes.functions, points = s->shapes.points;
   DVI_TRY(dvi__joint_check(system, fewest, functions > points ? functions : points));
+  DVI_TRY(dvi__system_has_hessians(system));
   DVI_TRY(dvi__action_create_by_user(system, s->shapes.functions, s->shapes.points, counters,
                                      &s->action));
   if (!user_element_allocate(s, has_all, fewest))

@@ -169,6 +169,7 @@ static dvi_status check_potential(dvi__check *c, const dvi__potential_term *p)
   } else {
     DVI_TRY(measure_gradient_noise(c, dvi__potential_value_of_q, &at, c->q));
   }
+  if (p->callbacks.without_hessian) return DVI_OK;
   if (has_hessian) DVI_TRY(dvi__potential_hessian(p, &c->scratch, 1, &c->t, c->q, c->hessian[0]));
   return check_blocks(c, dvi__potential_gradient_of_q, &at, c->q, &qq, NULL);
 }

@@ -24,7 +24,7 @@ static int longest_pattern(const dvi_system *system)
 
 dvi_status dvi__check_allocate(dvi__check *c, const dvi_system *system)
 {
-  DVI_TRY(dvi__system_prepare_hessian(system));
+  DVI_TRY(dvi__system_complete_patterns(system));
   DVI_TRY(dvi__scratch_create(system, 1, 1, &c->scratch));
   int complete = dvi__differences_allocate((size_t)c->n, &c->differences);
   for (int i = 0; i < 2; i++) {

@@ -137,6 +137,7 @@ static dvi_status collect_numbers(const subject *s, double t, size_t longest, do
   if (s->potential != NULL) {
     DVI_TRY(dvi__potential_value(s->potential, s->scratch, 1, &t, s->q, numbers));
     DVI_TRY(dvi__potential_gradient(s->potential, s->scratch, 1, &t, s->q, gradient));
+    if (s->potential->callbacks.without_hessian) return DVI_OK;
     return dvi__potential_hessian(s->potential, s->scratch, 1, &t, s->q, hessian);
   }
   DVI_TRY(dvi__general_value(s->lagrangian, s->scratch, 1, &t, s->q, s->v, numbers));

@@ -29,6 +29,8 @@ static dvi_status embed_pattern(const dvi__pattern *part, const dvi__pattern *wh
 
 static dvi_status complete_potential(const dvi_system *s, dvi__potential_term *term)
 {
+  if (term->callbacks.without_hessian)
+    return term->qq.start == NULL ? dvi__pattern_empty(s->n, &term->qq) : DVI_OK;
   const int differenced = term->callbacks.hessian == NULL && term->callbacks.hessian_batch == NULL;
   const dvi_status status = term->qq.start == NULL
                                 ? dvi__pattern_copy(&(dvi_pattern){0}, s->n, term->name, &term->qq)
@@ -107,7 +109,8 @@ static size_t count_least_entries(const dvi_system *system)
   size_t least = (size_t)dvi__pattern_entries(&system->vv);
   if (system->lagrangian != NULL) least = more_entries(least, n, &system->lagrangian->qq);
   for (int k = 0; k < system->potential_count; k++)
-    least = more_entries(least, n, &system->potentials[k].qq);
+    if (!system->potentials[k].callbacks.without_hessian)
+      least = more_entries(least, n, &system->potentials[k].qq);
   if (system->vector != NULL) least = more_entries(least, n, &system->vector->qq);
   for (int k = 0; k < system->force_count; k++)
     least = more_entries(more_entries(least, n, &system->forces[k].by_q), n,
@@ -125,7 +128,7 @@ size_t dvi__system_least_entries(const dvi_system *system)
 
 /* The user sees no change of the system, so it is const. The lock serves users on other threads. On
  * failure the remains are replaced by the next call, or freed with the system. */
-dvi_status dvi__system_prepare_hessian(const dvi_system *system)
+dvi_status dvi__system_complete_patterns(const dvi_system *system)
 {
   dvi_system *s = (dvi_system *)(uintptr_t)system;
   dvi_status status = DVI_OK;
@@ -133,4 +136,27 @@ dvi_status dvi__system_prepare_hessian(const dvi_system *system)
   if (s->qq.start == NULL) status = join_terms(s);
   (void)pthread_mutex_unlock(&hessian_lock);
   return status;
+}
+
+const char *dvi__system_without_hessian(const dvi_system *system)
+{
+  for (int k = 0; k < system->potential_count; k++)
+    if (system->potentials[k].callbacks.without_hessian) return system->potentials[k].name;
+  return NULL;
+}
+
+dvi_status dvi__system_has_hessians(const dvi_system *system)
+{
+  const char *without = dvi__system_without_hessian(system);
+  if (without == NULL) return DVI_OK;
+  return dvi__fail(DVI_UNSUPPORTED,
+                   "potential '%s' is declared without a Hessian, and second derivatives are "
+                   "needed; take a method that needs none, or give the Hessian",
+                   without);
+}
+
+dvi_status dvi__system_prepare_hessian(const dvi_system *system)
+{
+  DVI_TRY(dvi__system_has_hessians(system));
+  return dvi__system_complete_patterns(system);
 }

@@ -5,15 +5,23 @@
 #include "num/finite.h"
 #include "system/term/difference.h"
 
+/* Refuse what a callback returned, with its own reason if it left one. */
+static dvi_status refuse(int returned, const char *name, const char *what)
+{
+  char reason[DVI__SENTENCE_SIZE];
+  dvi__take_reason(reason);
+  const char *colon = reason[0] != '\0' ? ": " : "";
+  if (returned < 0)
+    return dvi__fail(DVI_CALLBACK_FAILED, "%s: the %s callback failed with %d%s%s", name, what,
+                     returned, colon, reason);
+  return dvi__fail(DVI_CALLBACK_RETRY, "%s: the %s callback asked for a smaller step (%d)%s%s",
+                   name, what, returned, colon, reason);
+}
+
 dvi_status dvi__verdict(int returned, int entries, int count, const double *result,
                         const char *name, const char *what, const char *in)
 {
-  if (returned < 0)
-    return dvi__fail(DVI_CALLBACK_FAILED, "%s: the %s callback failed with %d", name, what,
-                     returned);
-  if (returned > 0)
-    return dvi__fail(DVI_CALLBACK_RETRY, "%s: the %s callback asked for a smaller step (%d)", name,
-                     what, returned);
+  if (returned != 0) return refuse(returned, name, what);
   const ptrdiff_t bad = dvi__first_not_finite((size_t)entries * (size_t)count, result);
   if (bad < 0) return DVI_OK;
   return dvi__fail(DVI_NOT_FINITE, "%s: the %s callback gave %g%s (entry %td, point %td of %d)",

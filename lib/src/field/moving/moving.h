@@ -1,0 +1,146 @@
+/* A field on a moving mesh, and what the files of this room share.
+ *
+ * Numbers of a node are its position and its values, numbers = 1 + components. The Lagrangian is a
+ * sum over stencils of a few nodes side by side. Each is a function of the nodes' numbers and of
+ * their rates, with derivatives by all of them in one array: first those by numbers, node by node,
+ * then those by rates. */
+#ifndef DVI_FIELD_MOVING_MOVING_H
+#define DVI_FIELD_MOVING_MOVING_H
+#include <dvi/moving.h>
+
+#include "num/pattern.h"
+
+enum {
+  DVI__NODE_NUMBERS = 1 + DVI_MOVING_COMPONENTS_MAX,
+  DVI__STENCIL_NODES = 4, /* of the widest stencil */
+  DVI__STENCIL_NUMBERS = DVI__STENCIL_NODES * DVI__NODE_NUMBERS,
+  DVI__MOVING_VARIABLES = 3 * DVI_MOVING_COMPONENTS_MAX,
+  DVI__MOVING_PAIRS = DVI__MOVING_VARIABLES * (DVI__MOVING_VARIABLES + 1) / 2
+};
+
+/* Stencils of one kind. Number k of them has the nodes first + k and those that follow it. */
+typedef struct dvi__stencils {
+  int count, nodes, first;
+  /* [count][nodes*numbers][nodes*numbers] entry of the pattern for a row and a column, or -1 */
+  int *entry;
+} dvi__stencils;
+
+/* The symmetry that adds to one number of all nodes. */
+typedef struct dvi__number_translation {
+  const dvi_moving *moving;
+  int number;
+  char name[24];
+} dvi__number_translation;
+
+struct dvi_moving {
+  int cells, nodes; /* nodes without the periodic last one */
+  int components, numbers, unknowns, periodic, points;
+  dvi_moving_motion motion;
+  double mu, kappa, stretch, viscosity, dispersion, path_step;
+  double *node; /* [cells+1] positions of reference */
+  double from, length, jump[DVI_MOVING_COMPONENTS_MAX];
+  double end[2][DVI_MOVING_COMPONENTS_MAX]; /* fixed values */
+  int fixed[2];
+  int *unknown; /* [nodes*numbers] coordinate, or -1 */
+  int translations;
+  dvi_density_part part;
+  dvi_jet variable[DVI__MOVING_VARIABLES];
+  int pair[DVI__MOVING_PAIRS][2];
+  dvi_moving_mean mean;
+  int (*space_derivative)(int count, double t, const double *x, const double *z, double *l_x,
+                          double *l_xz, double *l_xx, void *user);
+  int (*path)(int count, double t, const double *X, double *x, double *rate, void *user);
+  void *user;
+  double gauss[DVI_MOVING_POINTS_MAX], weight[DVI_MOVING_POINTS_MAX];
+  dvi__stencils cell, bend, drag;                         /* of 2, 3 and 4 nodes */
+  dvi__pattern pattern, drag_pattern, arcs;               /* arcs: gradients of the constraints */
+  dvi__number_translation translation[DVI__NODE_NUMBERS]; /* the symmetries */
+};
+
+/* A state, or one at rest with v = NULL. */
+typedef struct dvi__moving_state {
+  double t;
+  const double *q, *v;
+} dvi__moving_state;
+
+/* Sums of the Lagrangian and its derivatives. Each may be NULL. */
+typedef struct dvi__moving_sums {
+  double *L, *L_q, *L_v, *L_qq, *L_qv, *L_vv;
+} dvi__moving_sums;
+
+/* A function of the numbers of a stencil's nodes, with derivatives by them. */
+typedef struct dvi__stencil {
+  int half, size; /* numbers, and those with their rates */
+  double y[2 * DVI__STENCIL_NUMBERS];
+  double value, first[2 * DVI__STENCIL_NUMBERS];
+  double second[4 * DVI__STENCIL_NUMBERS * DVI__STENCIL_NUMBERS]; /* [size*size] */
+} dvi__stencil;
+
+/* Give the position and the rate of a node of reference position X on the path. Returns as the path
+ * does. */
+int dvi__moving_follow(const dvi_moving *m, double t, double X, double *x, double *rate);
+
+/* Read the numbers and rates of nodes side by side into y [2*count*numbers]. Nodes below 0 and
+ * beyond the last one are images of a periodic field. Returns as callbacks do, and 1 with a reason
+ * if two nodes are not in their order. */
+int dvi__moving_gather(const dvi_moving *m, const dvi__moving_state *state, int node, int count,
+                       double *y);
+
+/* Start a stencil of some nodes with zero derivatives. */
+void dvi__stencil_clear(const dvi_moving *m, int nodes, dvi__stencil *s);
+
+/* Add stencil k to the sums. */
+void dvi__stencil_scatter(const dvi_moving *m, const dvi__stencils *of, int k,
+                          const dvi__stencil *s, const dvi__moving_sums *sums);
+
+/* Add the integrals over cells, the mass and stiffness of the mesh. Returns as callbacks do. */
+int dvi__moving_add_cells(const dvi_moving *m, const dvi__moving_state *state,
+                          const dvi__moving_sums *sums);
+
+/* Add the dispersion. Returns as callbacks do. */
+int dvi__moving_add_bends(const dvi_moving *m, const dvi__moving_state *state,
+                          const dvi__moving_sums *sums);
+
+/* Set all sums to the Lagrangian and its derivatives. Returns as callbacks do. */
+int dvi__moving_sum(const dvi_moving *m, const dvi__moving_state *state,
+                    const dvi__moving_sums *sums);
+
+/* Refuse a state on whose mesh a cell has no length. DVI_BAD_ARGUMENT, or as the path fails. */
+dvi_status dvi__moving_check(const dvi_moving *m, const dvi__moving_state *state);
+
+/* The force of viscosity, with derivatives in the drag pattern, as callbacks of a dvi_force. */
+int dvi__moving_drag(double t, const double *q, const double *v, double *F, void *user);
+int dvi__moving_drag_jacobian(double t, const double *q, const double *v, double *F_q, double *F_v,
+                              void *user);
+
+/* The constraints of DVI_MOVING_EQUAL: one for each pair of cells side by side, their pattern, and
+ * the callbacks of a dvi_holonomic. */
+dvi_status dvi__moving_lay_out_arcs(dvi_moving *m);
+int dvi__moving_arc_value(double t, const double *q, double *phi, void *user);
+int dvi__moving_arc_gradient(double t, const double *q, double *phi_q, void *user);
+int dvi__moving_arc_hessian(double t, const double *q, const double *w, double *phi_w_qq,
+                            void *user);
+
+/* A wave at the nodes: positions and velocities [cells+1], values and derivatives
+ * [components*(cells+1)]. */
+typedef struct dvi__wave_values {
+  double *x, *velocity, *u, *u_x, *u_t;
+} dvi__wave_values;
+
+/* Move the nodes along a wave to arcs of one length, and give them velocities that keep that. */
+dvi_status dvi__moving_even_out(const dvi_moving *m, dvi_moving_wave *wave, void *user,
+                                dvi__wave_values *w);
+
+/* Place the nodes of reference so that the monitor has one integral in all cells. */
+dvi_status dvi__moving_grade(const dvi_moving_terms *terms, dvi_moving *m);
+
+/* Number the unknowns, and make patterns and the places of all stencils in them. */
+dvi_status dvi__moving_lay_out(dvi_moving *m);
+
+/* Tell if the positions of the nodes are unknowns. */
+static inline int dvi__moving_is_free(const dvi_moving *m)
+{
+  return m->motion != DVI_MOVING_PRESCRIBED;
+}
+
+#endif

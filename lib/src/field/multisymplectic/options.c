@@ -1,0 +1,84 @@
+/* The words of the method: "multisymplectic:space=1/6,time=midpoint,potential=levels". */
+#include <dvi/number.h>
+#include <string.h>
+
+#include "core/status.h"
+#include "field/multisymplectic/lattice.h"
+
+static const struct {
+  const char *word;
+  double weight;
+} words[] = {{"trapezoid", 0}, {"midpoint", 1.0 / 4}, {"exact", 1.0 / 6}, {"fourth", 1.0 / 12}};
+
+/* Returns the text behind a word with its end, or NULL. */
+static const char *behind(const char *text, const char *word)
+{
+  const size_t length = strlen(word);
+  return strncmp(text, word, length) == 0 ? text + length : NULL;
+}
+
+static int ends(const char *text)
+{
+  return *text == '\0' || *text == ',';
+}
+
+/* Read a weight: a word, a number, or a fraction. Returns the text behind it, or NULL. */
+static const char *read_weight(const char *text, double *weight)
+{
+  double below = 1;
+  for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
+    const char *rest = behind(text, words[i].word);
+    if (rest == NULL || !ends(rest)) continue;
+    *weight = words[i].weight;
+    return rest;
+  }
+  const char *rest = dvi_number_read(text, weight);
+  if (rest == text) return NULL;
+  if (*rest == '/') {
+    const char *number = rest + 1;
+    rest = dvi_number_read(number, &below);
+    if (rest == number) return NULL;
+    *weight /= below;
+  }
+  return *weight >= 0 && *weight <= 0.25 && ends(rest) ? rest : NULL;
+}
+
+/* Take one option. Returns the text behind it, or NULL if it is none. */
+static const char *take(const char *text, dvi_multisymplectic_weights *weights)
+{
+  const char *value = behind(text, "time=");
+  if (value != NULL) return read_weight(value, &weights->time);
+  value = behind(text, "space=");
+  if (value != NULL) {
+    const char *rest = read_weight(value, &weights->space[0]);
+    for (int d = 1; d < DVI_AXES_MAX; d++) weights->space[d] = weights->space[0];
+    return rest;
+  }
+  value = behind(text, "potential=levels");
+  if (value == NULL || !ends(value)) return NULL;
+  weights->levels = 1;
+  return value;
+}
+
+dvi_status dvi_multisymplectic_parse(const char *method, dvi_multisymplectic_weights *weights)
+{
+  dvi_multisymplectic_weights found = {.time = 0};
+  if (method == NULL || weights == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "multisymplectic: a method and a place are needed");
+  const char *text = behind(method, "multisymplectic");
+  if (text == NULL || (*text != '\0' && *text != ':'))
+    return dvi__fail(DVI_BAD_OPTION, "multisymplectic: \"%s\" is another method", method);
+  if (*text == ':') text++;
+  while (*text != '\0') {
+    const char *rest = take(text, &found);
+    if (rest == NULL)
+      return dvi__fail(DVI_BAD_OPTION,
+                       "multisymplectic: \"%.*s\" is no option: \"space=\" and \"time=\" have a "
+                       "weight from 0 to 1/4 or one of the words trapezoid, midpoint, exact and "
+                       "fourth, and potentials can be \"potential=levels\"",
+                       (int)strcspn(text, ","), text);
+    text = *rest == ',' ? rest + 1 : rest;
+  }
+  *weights = found;
+  return DVI_OK;
+}

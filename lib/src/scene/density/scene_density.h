@@ -1,0 +1,121 @@
+/* A scene of fields with a density: what its sections say, and the field that is made of them.
+ *
+ * While the sections are read, the coordinates of the scene are those of one place (dvi__jets):
+ * its position and the derivatives of the fields there. Expressions are functions of these.
+ * Afterwards the scene's coordinates are the unknowns of the field. */
+#ifndef DVI_SCENE_DENSITY_SCENE_DENSITY_H
+#define DVI_SCENE_DENSITY_SCENE_DENSITY_H
+#include <dvi/density.h>
+
+#include "scene/elaborate/kernels.h"
+
+/* ---- functions of one place ---- */
+
+/* A function of time, position and variables of the field. It is zero if `term` is NULL. */
+typedef struct dvi__local {
+  dvi__scene_term *term;
+  int dimension;
+  bool has_time, has_place;
+  int variables;
+  dvi_jet *variable;  /* [variables] */
+  dvi__span *span;    /* [variables] of the first use of each */
+  int pairs, entries; /* entries of the pattern, which has both triangles */
+  int (*pair)[2];     /* [pairs] a >= b */
+  int *entry;         /* [pairs] of each pair in the pattern */
+} dvi__local;
+
+/* Make a function of kernels of one element, and empty the list. */
+bool dvi__local_make(dvi_scene *scene, dvi__kernels *list, dvi__local **local);
+
+/* Read an expression, a number or a vector of `count`, as functions local[count] of position, and
+ * of the time or the field as far as `may` says (DVI__MENTIONS_T, DVI__OF_FIELD). */
+enum { DVI__OF_FIELD = DVI__MENTIONS_V };
+bool dvi__local_read(dvi_scene *scene, const dvi__tree *tree, unsigned may, const char *where,
+                     int count, dvi__local **local);
+
+/* Evaluate l [count], l_z [variables*count] and l_zz [pairs*count], of which each may be NULL.
+ * Returns as callbacks do. `user` is a dvi__local. */
+int dvi__local_density(int count, double t, const double *x, const double *z, double *l,
+                       double *l_z, double *l_zz, void *user);
+/* Evaluate the derivative in time, l_t [count]. */
+int dvi__local_time(int count, double t, const double *x, const double *z, double *l_t, void *user);
+
+/* Evaluate a function of time and position. */
+int dvi__local_value(const dvi__local *local, int64_t count, double t, const double *x, double *f);
+/* Evaluate its first and second derivatives in time, of which the latter may be NULL. */
+int dvi__local_rates(const dvi__local *local, int64_t count, double t, const double *x, double *f_t,
+                     double *f_tt);
+
+/* ---- the scene ---- */
+
+/* A field as it is declared, components `first` to first + components - 1. */
+typedef struct dvi__declared_field {
+  const char *name;
+  dvi__span span;
+  bool is_complex, is_vector; /* a complex field is a vector of two */
+  int first, components;
+} dvi__declared_field;
+
+/* The classes into which the summands of a density are sorted, which are those of its parts. */
+enum { DVI__DENSITY_CLASSES = DVI_DENSITY_GENERAL + 1 };
+
+struct dvi__scene_density {
+  dvi__jets jets;
+  dvi_axis axis[DVI_AXES_MAX]; /* [jets.dimension], without a mesh */
+  dvi__span axis_span[DVI_AXES_MAX];
+  const dvi__tree *place; /* the section domain or mesh */
+  dvi_mesh *mesh;         /* or NULL */
+  const char *kind;       /* of the space, or NULL */
+  dvi__declared_field *field;
+  int fields;
+  const char **component; /* [components] names for columns */
+  dvi_density_condition *condition;
+  int conditions, condition_room;
+  bool has_placed_data;             /* a value or a flux depends on position */
+  dvi__local **start, **start_rate; /* [components] or NULL for 0 */
+  struct dvi__density_probe *probe; /* [probes] */
+  int probes;
+  const dvi__tree *section;               /* density or schroedinger */
+  dvi__local *part[DVI__DENSITY_CLASSES]; /* NULL for classes without summands */
+  int summands[DVI__DENSITY_CLASSES];
+  int degree;                    /* of the density in the fields, or -1 if no polynomial */
+  bool is_uniform;               /* the density does not depend on position */
+  bool is_static;                /* it has no rates */
+  char chosen[DVI_AXES_MAX][96]; /* kinds of the axes, with the points chosen here */
+  dvi_space *space;
+  dvi_density *density;
+  int64_t functions;
+};
+
+/* Return the number of components of all fields. */
+static inline int dvi__components(const dvi_scene *scene)
+{
+  return scene->density->jets.components;
+}
+
+/* Find a field by its name, or NULL. */
+const dvi__declared_field *dvi__field_named(const dvi_scene *scene, const char *name);
+
+/* Return the axis of this name, or -1. */
+int dvi__axis_named(const dvi_scene *scene, const char *name);
+
+/* Elaborate the density into one number, or that of Schroedinger's equation. */
+bool dvi__density_node(dvi__context *c, const dvi__tree *section, dvi__node *node);
+bool dvi__schroedinger_node(dvi__context *c, const dvi__tree *section, dvi__node *node);
+
+/* Sort the summands of a node into parts, and set what is known of the density. */
+bool dvi__density_sort(dvi__context *c, dvi__node root);
+
+/* Make the space, for a density of the degree that is known. */
+bool dvi__density_make_space(dvi_scene *scene);
+
+/* Refuse variable k of a function, which is of too high an order along an axis. */
+bool dvi__refuse_order(dvi_scene *scene, const dvi__local *local, int k, int axis);
+
+/* Give the coefficients [components*functions] of the start and of its rate. */
+bool dvi__density_start(dvi_scene *scene, double *U, double *rate);
+
+/* Declare the probes as what is watched. */
+bool dvi__density_make_probes(dvi_scene *scene);
+
+#endif

@@ -1,0 +1,87 @@
+/* The section initial: the fields and their rates at t = 0, as functions of position. */
+#include <string.h>
+
+#include "scene/density/scene_density.h"
+#include "scene/sections/sections.h"
+#include "scene/terms/fault.h"
+
+/* Split u' into the field's name and the mark of a rate. */
+static const dvi__declared_field *field_of_key(const dvi_scene *scene, const char *text,
+                                               bool *is_rate)
+{
+  char name[256];
+  const size_t length = strlen(text);
+  *is_rate = length > 1 && text[length - 1] == '\'';
+  if (length >= sizeof name) return NULL;
+  memcpy(name, text, length + 1);
+  if (*is_rate) name[length - 1] = '\0';
+  return dvi__field_named(scene, name);
+}
+
+static bool refuse_key(dvi_scene *scene, const dvi__tree *key)
+{
+  enum { FIELDS_MOST = DVI_COMPONENTS_MAX };
+  const struct dvi__scene_density *s = scene->density;
+  const char *name[FIELDS_MOST];
+  char hint[256];
+  for (int i = 0; i < s->fields; i++) name[i] = s->field[i].name;
+  return dvi__scene_refuse(scene, key->span,
+                           "the start has fields and their rates, as u', and no '%s'%s", key->text,
+                           dvi__nearest_or_all(key->text, s->fields, name, hint, sizeof hint));
+}
+
+bool dvi__density_read_start(dvi_scene *scene, const dvi__tree *section)
+{
+  struct dvi__scene_density *s = scene->density;
+  const size_t components = (size_t)s->jets.components;
+  if (!dvi__want_mapping(scene, section, "initial")) return false;
+  s->start = dvi__arena_take(&scene->arena, 2 * components, sizeof *s->start);
+  if (s->start == NULL) return dvi__scene_no_memory(scene);
+  s->start_rate = s->start + components;
+  for (int i = 0; i < section->count; i++) {
+    bool is_rate;
+    const dvi__declared_field *field = field_of_key(scene, section->key[i]->text, &is_rate);
+    if (field == NULL) return refuse_key(scene, section->key[i]);
+    if (!dvi__local_read(scene, section->child[i], 0, "a start", field->components,
+                         (is_rate ? s->start_rate : s->start) + field->first))
+      return false;
+  }
+  return true;
+}
+
+static int start_at(int64_t count, const double *x, double *f, void *user)
+{
+  return dvi__local_value(user, count, 0, x, f);
+}
+
+/* Complain of a start that has no value somewhere, at the part of the expression that has none. */
+static bool complain(dvi_scene *scene, dvi_status status)
+{
+  dvi__span span;
+  const char *words;
+  if (status == DVI_CALLBACK_FAILED && dvi__fault_status() != DVI_OK) status = dvi__fault_status();
+  if (status == DVI_NO_MEMORY) return dvi__scene_no_memory(scene);
+  if (dvi__fault_place(&span, &words))
+    return dvi__complain(scene->complaint, DVI_NOT_FINITE, span, "at the start: %s", words);
+  return dvi__complain(scene->complaint, status, dvi__tree_find(scene->tree, "initial")->span,
+                       "at the start: %s", dvi_last_error());
+}
+
+static bool interpolate(dvi_scene *scene, dvi__local *const *start, double *U)
+{
+  const struct dvi__scene_density *s = scene->density;
+  for (int c = 0; c < s->jets.components && start != NULL; c++) {
+    if (start[c] == NULL || start[c]->term == NULL) continue;
+    const dvi_status status = dvi_space_interpolate(s->space, start_at, start[c],
+                                                    U + c * s->functions);
+    if (status != DVI_OK) return complain(scene, status);
+  }
+  return true;
+}
+
+bool dvi__density_start(dvi_scene *scene, double *U, double *rate)
+{
+  dvi__fault_clear();
+  return interpolate(scene, scene->density->start, U) &&
+         interpolate(scene, scene->density->start_rate, rate);
+}

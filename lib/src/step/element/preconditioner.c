@@ -1,0 +1,355 @@
+/* The linear-preconditioned fixed-point iteration, for systems of fixed_point.h whose quadratic
+ * potentials have a diagonal Hessian K, such as the waves of Fourier's modes.
+ *
+ * With the forces g_j = -h b_j V_q(q0 + Z_j) the iteration of fixed_point.h replaces the offsets
+ * Z [r] of a coordinate by Phi(Z) = h/m [c p0 + sum_j (c_i - P_ij) g_j]. It contracts for
+ * h omega < 1 or so. Here the part of K in Phi is taken implicitly,
+ *
+ *     Z <- Z + (I + h^2 k/m B)^{-1} (Phi(Z) - Z),   B_ij = (c_i - P_ij) b_j,
+ *
+ * which contracts as if the other potentials were alone. Phi and its forces are those of all
+ * potentials, so that the equations, and their symplecticity to the last bit, are those of
+ * fixed_point.h. The inverse decides how fast they are solved, and no more. At the end g_j gets the
+ * change of the linear forces with the last change of Z. What is left of it is the other forces'.
+ *
+ * The inverses are kept from step to step as long as h stays. Coordinates with equal k/m share
+ * one, and those with k <= 0 have none. Source: Hairer, Lubich and Wanner 2006, sec. VIII.6. */
+#include "step/element/action_struct.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "num/simd/lanes.h"
+#include "step/element/fixed_point.h"
+#include "system/term/term.h"
+
+struct dvi__preconditioner {
+  int inverses;      /* number of the different k/m > 0 */
+  double *stiffness; /* [n] k */
+  double *ratio;     /* [n] k/m > 0 in ascending order, without repetitions */
+  int *place;        /* [n] place of each coordinate's k/m among these, or -1 */
+  double *B;         /* [r*r] by rows */
+  double *row_sum;   /* [r] of B */
+  double *inverse;   /* [inverses*r*lanes] by columns */
+  double *matrix;    /* [r*2r] work of an inverse, by rows */
+  double *rest;      /* [n*r] Phi(Z) - Z */
+  double *moved;     /* [n*lanes] its product with the inverse */
+};
+
+int dvi__action_has_preconditioner(const dvi__action *a)
+{
+  return a->preconditioner != NULL;
+}
+
+/* ---- stiffness ---- */
+
+static int is_diagonal(const dvi__pattern *qq)
+{
+  if (qq->start == NULL) return 0;
+  for (int j = 0; j < qq->columns; j++)
+    for (int e = qq->start[j]; e < qq->start[j + 1]; e++)
+      if (qq->row[e] != j) return 0;
+  return 1;
+}
+
+/* Tell whether the Hessian of this potential is constant and declared diagonal. A pattern that was
+ * not declared may be completed by another thread, and is not read. */
+static int has_diagonal(const dvi__potential_term *term)
+{
+  const int declared = term->callbacks.qq.start != NULL;
+  return term->callbacks.quadratic && declared && is_diagonal(&term->qq);
+}
+
+static int has_diagonals(const dvi_system *s)
+{
+  for (int k = 0; k < s->potential_count; k++)
+    if (has_diagonal(&s->potentials[k])) return 1;
+  return 0;
+}
+
+/* Add the diagonal of one potential, K (1,..,1) as a difference of gradients. work is [3 n]. Where
+ * it cannot be evaluated there is no preconditioner for it. */
+static void add_diagonal(const dvi__potential_term *term, dvi__scratch *scratch, double *work,
+                         double *stiffness)
+{
+  const double t = 0;
+  const size_t n = (size_t)scratch->n;
+  double *ones = work, *at_ones = work + n, *at_origin = work + 2 * n;
+  for (size_t i = 0; i < n; i++) ones[i] = 0;
+  if (dvi__potential_gradient(term, scratch, 1, &t, ones, at_origin) != DVI_OK) return;
+  for (size_t i = 0; i < n; i++) ones[i] = 1;
+  if (dvi__potential_gradient(term, scratch, 1, &t, ones, at_ones) != DVI_OK) return;
+  for (size_t i = 0; i < n; i++) stiffness[i] += at_ones[i] - at_origin[i];
+}
+
+static dvi_status find_stiffness(const dvi_system *s, double *stiffness)
+{
+  dvi__scratch scratch;
+  double *work = DVI_NEW(double, 3 * (size_t)s->n);
+  dvi_status status = dvi__scratch_create(s, 1, 0, &scratch);
+  if (status == DVI_OK && work == NULL)
+    status = dvi__fail(DVI_NO_MEMORY, "action: no memory for %d coordinates", s->n);
+  for (int k = 0; k < s->potential_count && status == DVI_OK; k++)
+    if (has_diagonal(&s->potentials[k])) add_diagonal(&s->potentials[k], &scratch, work, stiffness);
+  dvi__scratch_clear(&scratch);
+  dvi__release(work);
+  return status;
+}
+
+/* ---- tables ---- */
+
+static int compare_ratios(const void *one, const void *other)
+{
+  const double a = *(const double *)one, b = *(const double *)other;
+  return (a > b) - (a < b);
+}
+
+static double ratio_of(const dvi__action *a, int i)
+{
+  return a->preconditioner->stiffness[i] / a->system->mass_diagonal[i];
+}
+
+/* List the different k/m, and find the place of each coordinate's. */
+static void list_ratios(dvi__action *a)
+{
+  struct dvi__preconditioner *p = a->preconditioner;
+  size_t count = 0;
+  for (int i = 0; i < a->n; i++)
+    if (ratio_of(a, i) > 0) p->ratio[count++] = ratio_of(a, i);
+  qsort(p->ratio, count, sizeof *p->ratio, compare_ratios);
+  for (size_t k = 0; k < count; k++)
+    if (p->inverses == 0 || p->ratio[k] != p->ratio[p->inverses - 1])
+      p->ratio[p->inverses++] = p->ratio[k];
+  for (int i = 0; i < a->n; i++) {
+    const double ratio = ratio_of(a, i);
+    const double *found = bsearch(&ratio, p->ratio, (size_t)p->inverses, sizeof ratio,
+                                  compare_ratios);
+    p->place[i] = found != NULL ? (int)(found - p->ratio) : -1;
+  }
+}
+
+static void fill_B(dvi__action *a)
+{
+  struct dvi__preconditioner *p = a->preconditioner;
+  const int r = a->r;
+  for (int i = 0; i < r; i++)
+    for (int j = 0; j < r; j++) {
+      p->B[i * r + j] = a->fixed_point.matrix[j * a->fixed_point.lanes + i] * a->weight[j];
+      p->row_sum[i] += p->B[i * r + j];
+    }
+}
+
+static dvi_status no_memory(const dvi__action *a)
+{
+  return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d nodes in %d dimensions", a->r, a->n);
+}
+
+static dvi_status allocate_numbers(dvi__action *a)
+{
+  struct dvi__preconditioner *p = a->preconditioner;
+  const size_t n = (size_t)a->n, r = (size_t)a->r, lanes = (size_t)a->fixed_point.lanes;
+  p->B = DVI_NEW(double, r *r);
+  p->row_sum = DVI_NEW(double, r);
+  p->inverse = DVI_NEW(double, (size_t)p->inverses *r *lanes);
+  p->matrix = DVI_NEW(double, 2 * r * r);
+  p->rest = DVI_NEW(double, n *r);
+  p->moved = DVI_NEW(double, n *lanes);
+  return p->B && p->row_sum && p->inverse && p->matrix && p->rest && p->moved ? DVI_OK
+                                                                              : no_memory(a);
+}
+
+dvi_status dvi__action_prepare_preconditioner(dvi__action *a)
+{
+  if (a->system->vector != NULL || !has_diagonals(a->system)) return DVI_OK;
+  struct dvi__preconditioner *p = a->preconditioner = DVI_NEW(struct dvi__preconditioner, 1);
+  if (p == NULL) return no_memory(a);
+  p->stiffness = DVI_NEW(double, a->n);
+  p->ratio = DVI_NEW(double, a->n);
+  p->place = DVI_NEW(int, a->n);
+  if (p->stiffness == NULL || p->ratio == NULL || p->place == NULL) return no_memory(a);
+  DVI_TRY(find_stiffness(a->system, p->stiffness));
+  list_ratios(a);
+  if (p->inverses == 0) {
+    dvi__action_clear_preconditioner(a);
+    return DVI_OK;
+  }
+  DVI_TRY(allocate_numbers(a));
+  fill_B(a);
+  return DVI_OK;
+}
+
+void dvi__action_clear_preconditioner(dvi__action *a)
+{
+  struct dvi__preconditioner *p = a->preconditioner;
+  if (p == NULL) return;
+  double *const owned[] = {p->stiffness, p->ratio,  p->B,    p->row_sum,
+                           p->inverse,   p->matrix, p->rest, p->moved};
+  for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) dvi__release(owned[i]);
+  dvi__release(p->place);
+  dvi__release(p);
+  a->preconditioner = NULL;
+}
+
+/* ---- inverses ---- */
+
+/* A smaller pivot, beside entries of about 1 and more, is that of a singular matrix. */
+static const double least_pivot = 1e-10;
+
+static void swap_rows(int count, double *one, double *other)
+{
+  for (int j = 0; j < count; j++) {
+    const double kept = one[j];
+    one[j] = other[j];
+    other[j] = kept;
+  }
+}
+
+static int largest_row(int r, int column, const double *matrix)
+{
+  int largest = column;
+  for (int i = column + 1; i < r; i++)
+    if (fabs(matrix[i * 2 * r + column]) > fabs(matrix[largest * 2 * r + column])) largest = i;
+  return largest;
+}
+
+/* Turn [A, I] into [I, A^{-1}] by Gauss and Jordan. Returns 0 if A is singular. */
+static int eliminate(int r, double *matrix)
+{
+  const int width = 2 * r;
+  for (int k = 0; k < r; k++) {
+    double *pivot = matrix + k * width;
+    const int largest = largest_row(r, k, matrix);
+    if (largest != k) swap_rows(width, pivot, matrix + largest * width);
+    if (!(fabs(pivot[k]) > least_pivot)) return 0;
+    const double scale = 1 / pivot[k];
+    for (int j = 0; j < width; j++) pivot[j] *= scale;
+    for (int i = 0; i < r; i++) {
+      double *row = matrix + i * width;
+      const double factor = row[k];
+      for (int j = 0; j < width && i != k; j++) row[j] -= factor * pivot[j];
+    }
+  }
+  return 1;
+}
+
+/* Invert I + z B. Where it is singular, nothing is taken implicitly. */
+static void invert(const dvi__action *a, double z, double *inverse)
+{
+  struct dvi__preconditioner *p = a->preconditioner;
+  const int r = a->r;
+  for (int i = 0; i < r; i++)
+    for (int j = 0; j < r; j++) {
+      p->matrix[i * 2 * r + j] = z * p->B[i * r + j] + (i == j);
+      p->matrix[i * 2 * r + r + j] = i == j;
+    }
+  const int regular = eliminate(r, p->matrix);
+  for (int i = 0; i < r; i++)
+    for (int j = 0; j < r; j++)
+      inverse[j * a->fixed_point.lanes + i] = regular ? p->matrix[i * 2 * r + r + j] : i == j;
+}
+
+static size_t inverse_size(const dvi__action *a)
+{
+  return (size_t)a->r * (size_t)a->fixed_point.lanes;
+}
+
+void dvi__preconditioner_set_step(dvi__action *a)
+{
+  struct dvi__preconditioner *p = a->preconditioner;
+  for (size_t k = 0; k < (size_t)p->inverses; k++)
+    invert(a, a->h * a->h * p->ratio[k], p->inverse + k * inverse_size(a));
+}
+
+/* ---- iterations ---- */
+
+/* Copy rows of r numbers to padded rows. */
+static void pad_rows(const dvi__action *a, int rows, const double *from, double *to)
+{
+  const size_t r = (size_t)a->r, lanes = (size_t)a->fixed_point.lanes;
+  for (size_t i = 0; i < (size_t)rows; i++)
+    memcpy(to + i * lanes, from + i * r, r * sizeof(double));
+}
+
+/* Multiply `rest` by the inverses. Neighbours that share one are multiplied at once. */
+static void multiply_by_inverses(const dvi__action *a, double *product)
+{
+  const struct dvi__preconditioner *p = a->preconditioner;
+  const size_t r = (size_t)a->r, lanes = (size_t)a->fixed_point.lanes;
+  for (int i = 0, next; i < a->n; i = next) {
+    const double *from = p->rest + (size_t)i * r;
+    double *to = product + (size_t)i * lanes;
+    for (next = i + 1; next < a->n && p->place[next] == p->place[i];) next++;
+    if (p->place[i] < 0)
+      pad_rows(a, next - i, from, to);
+    else
+      dvi__lanes_product(next - i, a->r, a->fixed_point.lanes, a->fixed_point.lanes,
+                         p->inverse + (size_t)p->place[i] * inverse_size(a), from, to);
+  }
+}
+
+/* Give Phi from its sums of forces. */
+static double offset_of(const dvi__action *a, size_t i, size_t j, double sum)
+{
+  const double c = a->fixed_point.node[j];
+  return a->fixed_point.start[i] * c + (a->fixed_point.factor[i] * sum + a->fixed_point.low[i] * c);
+}
+
+void dvi__preconditioner_begin(dvi__action *a)
+{
+  const struct dvi__preconditioner *p = a->preconditioner;
+  const size_t n = (size_t)a->n, r = (size_t)a->r, lanes = (size_t)a->fixed_point.lanes;
+  for (size_t i = 0; i < n; i++) {
+    const double pull = a->fixed_point.factor[i] * a->h * fmax(p->stiffness[i], 0) * a->q0[i];
+    for (size_t j = 0; j < r; j++)
+      p->rest[i * r + j] = offset_of(a, i, j, a->Z[i * lanes + j]) - pull * p->row_sum[j];
+  }
+  multiply_by_inverses(a, a->Z);
+  for (size_t i = 0; i < n; i++)
+    for (size_t j = 0; j < r; j++) a->fixed_point.Q[i * r + j] = a->q0[i] + a->Z[i * lanes + j];
+}
+
+/* Move the nodes, and their linear forces. */
+static void move_nodes(dvi__action *a)
+{
+  const struct dvi__preconditioner *p = a->preconditioner;
+  const size_t r = (size_t)a->r, lanes = (size_t)a->fixed_point.lanes;
+  for (size_t i = 0; i < (size_t)a->n; i++) {
+    const double stiffness = p->place[i] >= 0 ? p->stiffness[i] : 0;
+    const double *moved = p->moved + i * lanes;
+    double *Z = a->Z + i * lanes, *Q = a->fixed_point.Q + i * r, *g = a->fixed_point.force + i * r;
+    for (size_t j = 0; j < r; j++) {
+      Z[j] += moved[j];
+      Q[j] = a->q0[i] + Z[j];
+      g[j] += a->fixed_point.weight[j] * (stiffness * moved[j]);
+    }
+  }
+}
+
+void dvi__preconditioner_iterate(dvi__action *a, double *change, double *largest)
+{
+  const struct dvi__preconditioner *p = a->preconditioner;
+  const size_t n = (size_t)a->n, r = (size_t)a->r, lanes = (size_t)a->fixed_point.lanes;
+  dvi__lanes_weigh(a->n, a->r, a->fixed_point.weight, a->fixed_point.force);
+  dvi__lanes_product(a->n, a->r, a->fixed_point.lanes, a->fixed_point.lanes, a->fixed_point.matrix,
+                     a->fixed_point.force, p->moved);
+  for (size_t i = 0; i < n; i++)
+    for (size_t j = 0; j < r; j++)
+      p->rest[i * r + j] = offset_of(a, i, j, p->moved[i * lanes + j]) - a->Z[i * lanes + j];
+  multiply_by_inverses(a, p->moved);
+  move_nodes(a);
+  *change = dvi__lanes_largest(n * lanes, p->moved);
+  *largest = dvi__lanes_largest(n * lanes, a->Z);
+  if (isnan(*change) || isnan(*largest)) *change = HUGE_VAL;
+}
+
+void dvi__preconditioner_other_forces(const dvi__action *a, double *g)
+{
+  const struct dvi__preconditioner *p = a->preconditioner;
+  const size_t r = (size_t)a->r;
+  for (size_t i = 0; i < (size_t)a->n; i++)
+    for (size_t j = 0; j < r && p->place[i] >= 0; j++)
+      g[i * r + j] += a->h * a->weight[j] * (p->stiffness[i] * a->fixed_point.Q[i * r + j]);
+}

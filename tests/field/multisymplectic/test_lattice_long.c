@@ -1,0 +1,61 @@
+/* labels: invariant long */
+/* Energies over many steps. */
+#include <dvi/dvi.h>
+#include <math.h>
+
+#include "support/suite.h"
+#include "support/waves/lattices.h"
+
+static double breather(double t, const double *x, const void *of)
+{
+  const double w = 0.5, g = sqrt(1 - w * w);
+  (void)of;
+  return 4 * atan(g / w * sin(w * t) / cosh(g * x[0]));
+}
+
+static double energy_of(const dvi_march *march)
+{
+  double value = (double)NAN;
+  ck_assert_int_eq(dvi_march_observe(march, 0, &value), DVI_OK);
+  return value;
+}
+
+/* The largest distance of the energy from its start in some steps, looked at after each tenth. */
+static double most_change(dvi_march *march, double step, int from, int to, double start)
+{
+  double most = 0;
+  for (int i = from; i < to; i += 10) {
+    ck_assert_int_eq(dvi_march_advance(march, i * step), DVI_OK);
+    most = fmax(most, fabs(energy_of(march) - start));
+  }
+  return most;
+}
+
+/* A breather of sine-Gordon with steps that are half of a coarse cell: the energy swings by h^2,
+ * and no more at the end than at the beginning. */
+START_TEST(energies_swing_and_do_not_drift)
+{
+  static const double weight[][2] = {{0, 0}, {1. / 6, 1. / 6}, {.25, .25}, {1. / 6, 1. / 4}};
+  const int steps = repeats(_i == 0 ? 1000000 : 100000);
+  lattice w = {.cells = 81,
+               .from = -20,
+               .to = 20,
+               .space = weight[_i][0],
+               .time = weight[_i][1],
+               .levels = _i == 3,
+               .V = "sine",
+               .step = .25};
+  dvi_march *march = lattice_march(&w);
+  lattice_start(march, &w, breather, NULL);
+  const double start = energy_of(march), first = most_change(march, w.step, 0, steps / 10, start),
+               last = most_change(march, w.step, steps - steps / 10, steps, start);
+  ck_assert_double_lt(first, .02 * start);
+  ck_assert_double_lt(last, 1.5 * first);
+  dvi_march_destroy(&march);
+}
+END_TEST
+
+SUITE(lattice_long)
+{
+  tcase_add_loop_test(tests, energies_swing_and_do_not_drift, 0, 4);
+}
