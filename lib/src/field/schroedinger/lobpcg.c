@@ -15,8 +15,8 @@
 
 enum { ITERATIONS = 1000, MORE = 4, BLOCKS = 3 };
 
-/* Residuals are as small as this beside an energy above the potential's minimum. Energies are then as
- * good as the square of it. */
+/* Residuals are as small as this beside an energy above the potential's minimum. Energies are then
+ * as good as the square of it. */
 static const double tolerance = 1e-11;
 
 typedef struct span {
