@@ -96,7 +96,7 @@ BEGIN {
   # libdvi shares these headers with sister libraries (lib/exports.map, DVI_PRIVATE).
   also["text core/memory.h"] = also["expr/compile num/simd/lanes.h"] = 1
   # Standard headers that a public header may need.
-  split("math.h stdarg.h stddef.h stdint.h", open_headers)
+  split("math.h stdarg.h stddef.h stdint.h string.h", open_headers)
   for (i in open_headers) standard[open_headers[i]] = 1
   count = split(methods, names, " ")
   for (i = 1; i <= count; i++) method[names[i] ".h"] = 1
@@ -146,7 +146,7 @@ function is_seen(target,   whole) {
 
 function check_public(quoted, header) {
   if (quoted || (header !~ /^dvi\// && !(header in standard)))
-    breach("a public header includes only <dvi/...>, <math.h>, <stdarg.h>, <stddef.h>, <stdint.h>")
+    breach("a public header includes only <dvi/...>, <math.h>, <stdarg.h>, <stddef.h>, <stdint.h>, <string.h>")
 }
 
 # The command, the problems and the examples are users of the library.

@@ -5,7 +5,7 @@
  *  translations in space are a symmetry of it. With a density l per length the Lagrangian is
  *
  *      L = sum over cells of int l(t, x, u, u_t, u_x) dx
- *          + mu/2 sum x_a'^2 - kappa sum (h_e - H_e)^2 / h_e - eps^2/2 sum u_xx^2
+ *          + mu/2 sum x_a'^2 - kappa sum (h_e - H_e)^2 / h_e - eps^2/2 int u_xx^2 dx
  *
  *  where h_e are the lengths of the cells, H_e those of reference, u_x = Du/h_e, and
  *  u_t = u' - u_x x' with u' and x' along a node's path. mu is a mass of the nodes, and kappa keeps
@@ -24,8 +24,10 @@ enum {
 
 /** How the nodes move. */
 typedef enum dvi_moving_motion {
-  DVI_MOVING_FREE,      /**< by the action. End nodes rest, or with periodic ends move, too */
-  DVI_MOVING_PRESCRIBED /**< by a path, or not at all without one */
+  DVI_MOVING_FREE,       /**< by the action. End nodes rest, or with periodic ends move, too */
+  DVI_MOVING_PRESCRIBED, /**< by a path, or not at all without one */
+  /** by constraints, all arcs sqrt(h^2 + (stretch Du)^2) of one length. From 3 cells on */
+  DVI_MOVING_EQUAL
 } dvi_moving_motion;
 
 /** What is known of u at an end of the interval. */
@@ -53,8 +55,8 @@ typedef struct dvi_moving_terms {
   dvi_axis axis;  /**< its nodes, if it has any, are those of reference. Without a kind */
   int cells;      /**< at least 2. 0 with the axis's nodes, which determine it */
   int components; /**< 1 to DVI_MOVING_COMPONENTS_MAX. Default: 1 */
-  /** The density, with variables u, u_t and u_x of the components. Its kind does not matter.
-   *  Required */
+  /** The density, with variables u, u_t and u_x of the components. Its kind and its derivative in
+   *  time are not read. Required */
   const dvi_density_part *part;
   const dvi_moving_mean *mean; /**< a part of the density that is integrated exactly */
   int translations;            /**< not 0 if l does not depend on x */
@@ -71,8 +73,9 @@ typedef struct dvi_moving_terms {
    *  method that takes u straight over a step, midpoint, then keeps fields u = b t + c x exactly,
    *  if the steps are these. Default: 0, nodes are on the path at all times */
   double path_step;
-  double mu;    /**< mass of a node, at least 0. Needed where u is straight */
-  double kappa; /**< stiffness of the cells' lengths, at least 0 */
+  double stretch; /**< of DVI_MOVING_EQUAL, at least 0 */
+  double mu;      /**< mass of a node, at least 0. Needed where u is straight */
+  double kappa;   /**< stiffness of the cells' lengths, at least 0 */
   /** A monitor m(x) > 0 [count], whose integral is the same in all cells of reference. Default:
    *  equal cells */
   int (*monitor)(int64_t count, const double *x, double *m, void *user);
@@ -134,11 +137,13 @@ const double *dvi_moving_nodes(const dvi_moving *moving, int *cells);
 dvi_status dvi_moving_system(dvi_moving *moving, dvi_system **system);
 
 /** Give coordinates q, velocities v, and momenta p at time 0 of a wave on the mesh of reference.
- *  Each of q, v and p may be NULL.
+ *  Each of q, v and p may be NULL. With DVI_MOVING_EQUAL nodes go from there to arcs of one length,
+ *  and the velocity of the first node alone is read, if it is an unknown.
  *
  *  @retval DVI_CALLBACK_FAILED  the wave failed
  *  @retval DVI_NOT_FINITE       the wave is not finite. dvi_last_error() names the node
  *  @retval DVI_SINGULAR         without mu, u is straight at a node
+ *  @retval DVI_NOT_CONVERGED    no arcs of one length were found
  *  @retval DVI_NO_MEMORY        there is no memory
  *  @retval (others)             as the callbacks fail */
 dvi_status dvi_moving_start(const dvi_moving *moving, dvi_moving_wave *wave, void *user, double *q,
@@ -178,6 +183,7 @@ dvi_status dvi_moving_evaluate(const dvi_moving *moving, double t, const double 
  *
  *  @param[in,out] q       unchanged on failure
  *  @param[out]    report  may be NULL
+ *  @retval DVI_UNSUPPORTED    the nodes have constraints
  *  @retval DVI_NOT_CONVERGED  the iteration stopped above its tolerance
  *  @retval DVI_NO_MEMORY      there is no memory
  *  @retval (others)           as the callbacks fail */

@@ -55,8 +55,8 @@ typedef struct dvi_multisymplectic_terms {
    *  axis. DVI_DENSITY_ONE_FORM is refused */
   const dvi_density_part *part;
   int parts;
-  /** [conditions] Values on parts of the boundary: "left", "right" (first axis), "bottom", "top",
-   *  "back", "front", "boundary". Of two the first counts. All else is free, without flux */
+  /** [conditions] of parts of the boundary: "left", "right" (first axis), "bottom", "top", "back",
+   *  "front", "boundary". Of two values the first counts. Fluxes add up */
   const dvi_density_condition *condition;
   int conditions;
   dvi_multisymplectic_weights weights;
@@ -100,8 +100,7 @@ extern "C" {
  *                               dvi_last_error() has. A mass has a zero mode: a weight 1/4 in space
  *                               with an even number of periodic cells, or without a fixed end
  *  @retval DVI_BAD_SIZE         a count is out of range
- *  @retval DVI_UNSUPPORTED      the density has other variables, a part is a one-form, or a
- *                               condition has a flux
+ *  @retval DVI_UNSUPPORTED      the density has other variables, or a part is a one-form
  *  @retval DVI_SINGULAR         the kinetic part is not positive definite, or the steps' matrix is
  *                               singular
  *  @retval DVI_CALLBACK_FAILED  a callback failed

@@ -46,8 +46,8 @@ typedef struct dvi_schroedinger_terms {
    *  boundary. Periodic axes have none */
   const char *fixed;
   /** 2 or 3 if x >= 0 is the distance from the origin in so many dimensions and psi does not depend
-   *  on angles: integrals have the measure 2 pi x dx or 4 pi x^2 dx. One axis, not fourier. Default:
-   *  x is a coordinate */
+   *  on angles: integrals have the measure 2 pi x dx or 4 pi x^2 dx. One axis, not fourier.
+   *  Default: x is a coordinate */
   int radial;
 } dvi_schroedinger_terms;
 
@@ -115,6 +115,9 @@ dvi_status dvi_schroedinger_measure(const dvi_schroedinger *equation, double t, 
 const char *dvi_schroedinger_method_name(int i);
 
 /** Create a march (dvi/march.h). Its form A is psi [2*functions], and it has no other forms.
+ *
+ *  Its bound (dvi_march_facts) is infinite, but for split with an interaction on fourier. Steps
+ *  above pi hbar over the largest kinetic energy let resonances of modes grow there.
  *
  *  It makes whole steps. Between two of them it shows a shorter step from the earlier one, beside
  *  the state. A start leaves out what it has of fixed functions. Observables are the members of

@@ -125,11 +125,13 @@ START_TEST(derivatives_agree_with_differences)
 {
   const double jump[2] = {0.7, -0.4};
   const dvi_moving_mean mean = {.mean = mixed_mean};
-  for (int k = 0; k < 16; k++) {
-    const int moves = k % 2, periodic = k / 2 % 2, rough = k / 4 % 2, few = k / 8;
+  for (int k = 0; k < 24; k++) {
+    const dvi_moving_motion motion = (dvi_moving_motion)(k % 3);
+    const int moves = motion != DVI_MOVING_PRESCRIBED;
+    const int periodic = k / 3 % 2, rough = k / 6 % 2, few = k / 12;
     check_derivatives(&(dvi_moving_terms){.size = sizeof(dvi_moving_terms),
                                           .axis = {.to = 2 * pi, .periodic = periodic},
-                                          .cells = few ? 2 : 5,
+                                          .cells = few ? 3 - (motion != DVI_MOVING_EQUAL) : 5,
                                           .components = 2,
                                           .part = &tangled,
                                           .mean = &mean,
@@ -338,6 +340,7 @@ START_TEST(bad_masses_and_ends_are_refused)
   REFUSE(DVI_BAD_ARGUMENT, "the viscosity is inf", viscosity = INFINITY);
   REFUSE(DVI_BAD_ARGUMENT, "the dispersion is -2", dispersion = -2);
   REFUSE(DVI_BAD_ARGUMENT, "there is no motion 5", motion = (dvi_moving_motion)5);
+  REFUSE(DVI_BAD_ARGUMENT, "a stretch needs DVI_MOVING_EQUAL", stretch = 1);
   REFUSE(DVI_BAD_ARGUMENT, "leave both out", motion = DVI_MOVING_PRESCRIBED);
   REFUSE(DVI_BAD_ARGUMENT, "choose DVI_MOVING_PRESCRIBED", path = sway);
   REFUSE(DVI_BAD_ARGUMENT, "a path_step needs a path", path_step = 1);
@@ -418,6 +421,68 @@ START_TEST(bad_states_are_refused)
 }
 END_TEST
 
+START_TEST(arcs_of_one_length_are_refused_where_they_are_not_possible)
+{
+  dvi_moving_terms terms = ring();
+  dvi_moving *moving = NULL;
+  double q[16] = {0};
+  terms.motion = DVI_MOVING_EQUAL;
+  terms.cells = 2;
+  ck_assert_int_eq(dvi_moving_create(&terms, &moving), DVI_BAD_SIZE);
+  check_words("at least 3 cells, not 2");
+  terms.cells = 8;
+  moving = create(&terms);
+  ck_assert_int_eq(dvi_moving_solve(moving, q, NULL), DVI_UNSUPPORTED);
+  dvi_moving_destroy(&moving);
+}
+END_TEST
+
+static int cliff(int64_t count, const double *x, double *u, double *u_x, double *u_t,
+                 double *velocity, void *user)
+{
+  (void)u_t, (void)velocity, (void)user;
+  for (int64_t i = 0; i < count; i++) {
+    u[i] = 100 * tanh(50 * (x[i] - 3));
+    u_x[i] = 5000 / pow(cosh(50 * (x[i] - 3)), 2);
+  }
+  return 0;
+}
+
+START_TEST(arcs_that_are_not_found_are_refused)
+{
+  dvi_moving_terms terms = ring();
+  double q[16];
+  terms.motion = DVI_MOVING_EQUAL;
+  terms.stretch = 1;
+  dvi_moving *moving = create(&terms);
+  ck_assert_int_eq(dvi_moving_start(moving, cliff, NULL, q, NULL, NULL), DVI_NOT_CONVERGED);
+  check_words("give a monitor with cells of nearly equal arcs");
+  dvi_moving_destroy(&moving);
+}
+END_TEST
+
+/* An allocation of a static state may fail, and the state stays. */
+START_TEST(lack_of_memory_leaves_a_static_state)
+{
+  const dvi_moving_terms terms = ring();
+  double rate = 0, q[16], before[16];
+  dvi_moving *moving = create(&terms);
+  ck_assert(!dvi_moving_start(moving, tilted, &rate, q, NULL, NULL));
+  q[3] += 0.1;
+  memcpy(before, q, sizeof q);
+  long allowed = 0;
+  dvi_status status = DVI_NO_MEMORY;
+  for (; status == DVI_NO_MEMORY; allowed++) {
+    ck_assert_mem_eq(before, q, sizeof q);
+    dvi__fail_allocations_after(allowed);
+    status = dvi_moving_solve(moving, q, NULL);
+    dvi__fail_allocations_after(-1);
+  }
+  ck_assert_msg(status == DVI_OK && allowed > 2, "%s", dvi_last_error());
+  dvi_moving_destroy(&moving);
+}
+END_TEST
+
 START_TEST(points_outside_are_refused)
 {
   dvi_moving_terms terms = ring();
@@ -439,10 +504,11 @@ START_TEST(points_outside_are_refused)
 }
 END_TEST
 
-/* Every allocation of a field, a start, a static state and a system may fail. */
+/* Every allocation of a field, of starts and of a system may fail. */
 START_TEST(lack_of_memory_is_reported)
 {
   dvi_moving_terms terms = ring();
+  terms.motion = DVI_MOVING_EQUAL;
   terms.viscosity = terms.dispersion = 0.1;
   double rate = 0, q[16], x = 1, u;
   long allowed = 0;
@@ -478,6 +544,9 @@ SUITE(moving)
   tcase_add_test(tests, nodes_without_mass_are_refused);
   tcase_add_test(tests, components_without_rate_have_no_system);
   tcase_add_test(tests, bad_states_are_refused);
+  tcase_add_test(tests, arcs_of_one_length_are_refused_where_they_are_not_possible);
+  tcase_add_test(tests, arcs_that_are_not_found_are_refused);
+  tcase_add_test(tests, lack_of_memory_leaves_a_static_state);
   tcase_add_test(tests, points_outside_are_refused);
   tcase_add_test(tests, lack_of_memory_is_reported);
 }

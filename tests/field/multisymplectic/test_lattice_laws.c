@@ -229,8 +229,8 @@ START_TEST(quadratic_densities_conserve_energy_and_momentum)
 }
 END_TEST
 
-/* Both integrals, of u_t^2/2 + u_x^2/2 and -u_t u_x, are that of exp(2 sin x) cos^2 x over a period,
- * pi I_1(2). */
+/* Both integrals, of u_t^2/2 + u_x^2/2 and -u_t u_x, are that of exp(2 sin x) cos^2 x over a
+ * period, pi I_1(2). */
 static double right(double t, const double *x, const void *of)
 {
   (void)of;

@@ -31,8 +31,8 @@ static double most_change(dvi_march *march, double step, int from, int to, doubl
   return most;
 }
 
-/* A breather of sine-Gordon with steps that are half of a coarse cell: the energy swings by h^2, and
- * no more at the end than at the beginning. */
+/* A breather of sine-Gordon with steps that are half of a coarse cell: the energy swings by h^2,
+ * and no more at the end than at the beginning. */
 START_TEST(energies_swing_and_do_not_drift)
 {
   static const double weight[][2] = {{0, 0}, {1. / 6, 1. / 6}, {.25, .25}, {1. / 6, 1. / 4}};
@@ -47,8 +47,7 @@ START_TEST(energies_swing_and_do_not_drift)
                .step = .25};
   dvi_march *march = lattice_march(&w);
   lattice_start(march, &w, breather, NULL);
-  const double start = energy_of(march),
-               first = most_change(march, w.step, 0, steps / 10, start),
+  const double start = energy_of(march), first = most_change(march, w.step, 0, steps / 10, start),
                last = most_change(march, w.step, steps - steps / 10, steps, start);
   ck_assert_double_lt(first, .02 * start);
   ck_assert_double_lt(last, 1.5 * first);

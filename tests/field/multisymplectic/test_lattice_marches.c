@@ -1,6 +1,6 @@
 /* labels: unit */
-/* Lattices as marches: the same bits for all cuts of the way and after a restart, boundaries that
- * move, densities of other kinds, words of the method, and what is refused. */
+/* Lattices as marches: the same bits for all cuts of the way and after a restart, words of the
+ * method, and what is refused. */
 #include <dvi/dvi.h>
 #include <math.h>
 #include <stdlib.h>
@@ -10,8 +10,6 @@
 #include "support/files.h"
 #include "support/suite.h"
 #include "support/waves/lattices.h"
-
-static const double pi = 3.14159265358979323846;
 
 static void advance(dvi_march *march, double t)
 {
@@ -76,9 +74,9 @@ START_TEST(cuts_of_the_way_and_observations_change_no_bit)
   lattice w = kind(_i);
   dvi_march *a = begun(&w), *b = begun(&w);
   advance(a, 4.4);
-  for (double t = .07; t < 4.4; t += .07) {
+  for (int i = 1; i < 60; i++) {
     double energy;
-    advance(b, t);
+    advance(b, .07 * i);
     ck_assert_int_eq(dvi_march_observe(b, 0, &energy), DVI_OK);
   }
   advance(b, 4.4);
@@ -160,154 +158,6 @@ START_TEST(damaged_files_and_those_of_others_are_refused)
   dvi_march_destroy(&a);
   dvi_march_destroy(&b);
   dvi_march_destroy(&fresh);
-}
-END_TEST
-
-/* ---- conditions ---- */
-
-static int moving_wall(int64_t count, double t, const double *x, double *datum, void *user)
-{
-  (void)user;
-  for (int64_t i = 0; i < count; i++) datum[i] = sin(t - x[i]);
-  return 0;
-}
-
-static int moving_wall_rate(int64_t count, double t, const double *x, double *rate, double *second,
-                            void *user)
-{
-  (void)second, (void)user;
-  for (int64_t i = 0; i < count; i++) rate[i] = cos(t - x[i]);
-  return 0;
-}
-
-static double sine_wave(double t, const double *x, const void *of)
-{
-  (void)of;
-  return sin(t - x[0]);
-}
-
-/* u = sin(t - x) on [0,1] between walls that move, of order 2. */
-START_TEST(walls_may_move)
-{
-  static const double weight[][2] = {{0, 0}, {1. / 6, 1. / 6}, {.25, .25}, {1. / 6, .25}};
-  double before = 0;
-  for (int cells = 20; cells <= 160; cells *= 2) {
-    lattice w = {.cells = cells,
-                 .to = 1,
-                 .fixed = 1,
-                 .space = weight[_i][0],
-                 .time = weight[_i][1],
-                 .step = .8 / cells};
-    lattice_terms(&w);
-    w.condition.datum = moving_wall;
-    w.condition.rate = moving_wall_rate;
-    dvi_march *march = NULL;
-    ck_assert_int_eq(dvi_multisymplectic_create(&w.terms, &march), DVI_OK);
-    lattice_start(march, &w, sine_wave, NULL);
-    advance(march, 2);
-    const double error = lattice_distance(march, &w, sine_wave, NULL);
-    if (cells > 40) ck_assert_double_eq_tol(log2(before / error), 2, 0.2);
-    before = error;
-    dvi_march_destroy(&march);
-  }
-}
-END_TEST
-
-/* Unequal cells, which a free end and a wall close, still have order 2 where they change slowly. */
-static double quarter_wave(double t, const double *x, const void *of)
-{
-  (void)of;
-  return cos(x[0] / 4) * cos(t / 4);
-}
-
-START_TEST(cells_may_be_unequal)
-{
-  double before = 0;
-  for (int cells = 20; cells <= 160; cells *= 2) {
-    double node[161];
-    lattice w = {.cells = cells, .space = _i / 6.0, .time = .25, .step = 4.0 / cells};
-    lattice_terms(&w);
-    for (int i = 0; i <= cells; i++)
-      node[i] = 2 * pi * ((double)i / cells + .05 * sin(2 * pi * i / cells));
-    node[cells] = w.to;
-    w.axis[0].periodic = 0;
-    w.axis[0].node = node;
-    w.axis[0].nodes = cells + 1;
-    w.condition.part = "right";
-    w.terms.conditions = 1;
-    dvi_march *march = NULL;
-    ck_assert_int_eq(dvi_multisymplectic_create(&w.terms, &march), DVI_OK);
-    lattice_start(march, &w, quarter_wave, NULL);
-    advance(march, 10);
-    const double error = lattice_distance(march, &w, quarter_wave, NULL);
-    if (cells > 40) ck_assert_double_eq_tol(log2(before / error), 2, 0.2);
-    before = error;
-    dvi_march_destroy(&march);
-  }
-}
-END_TEST
-
-/* ---- other densities ---- */
-
-/* Born and Infeld: l = -sqrt(1 - u_t^2 + u_x^2), whose waves in one direction keep their shape, as
- * u_t^2 = u_x^2. z = (u_t, u_x). */
-static int born_infeld(int count, double t, const double *x, const double *z, double *l,
-                       double *l_z, double *l_zz, void *user)
-{
-  (void)t, (void)x, (void)user;
-  for (int i = 0; i < count; i++) {
-    const double v = z[i], w = z[count + i], square = 1 - v * v + w * w, root = sqrt(square);
-    if (!(square > 0)) return 1;
-    if (l != NULL) l[i] = -root;
-    if (l_z != NULL) l_z[i] = v / root, l_z[count + i] = -w / root;
-    if (l_zz != NULL) {
-      l_zz[i] = (1 + w * w) / (square * root);
-      l_zz[count + i] = -v * w / (square * root);
-      l_zz[2 * count + i] = -(1 - v * v) / (square * root);
-    }
-  }
-  return 0;
-}
-
-static double right_going(double t, const double *x, const void *of)
-{
-  (void)of;
-  return .4 * exp(sin(x[0] - t));
-}
-
-static const dvi_jet slopes[] = {{.rate = 1}, {.order = {1, 0, 0}}};
-static const dvi_density_part strings = {
-    .kind = DVI_DENSITY_GENERAL, .variable = slopes, .variables = 2, .density = born_infeld};
-
-START_TEST(densities_may_be_nonlinear_in_the_rates)
-{
-  static const double weight[][2] = {{0, 0}, {1. / 6, 1. / 6}, {.25, .25}};
-  double before = 0;
-  for (int cells = 41; cells <= 330; cells *= 2) {
-    lattice w = {.cells = cells + 1 - cells % 2, .step = .5 * 2 * pi / cells};
-    lattice_terms(&w);
-    w.terms.part = &strings;
-    w.terms.parts = 1;
-    w.terms.weights.space[0] = weight[_i][0];
-    w.terms.weights.time = weight[_i][1];
-    dvi_march *march = NULL;
-    dvi_law law[DVI_LAWS_MAX];
-    int count;
-    ck_assert_int_eq(dvi_multisymplectic_create(&w.terms, &march), DVI_OK);
-    lattice_start(march, &w, right_going, NULL);
-    advance(march, 2);
-    const double error = lattice_distance(march, &w, right_going, NULL);
-    if (cells > 100) ck_assert_double_eq_tol(log2(before / error), 2, 0.2);
-    before = error;
-    dvi_march_destroy(&march);
-    double u[400], E[400];
-    for (int i = 0; i < w.terms.cells[0]; i++)
-      u[i] = right_going(0, (double[]){2 * pi * i / w.terms.cells[0]}, NULL), E[i] = .2 * u[i];
-    const dvi_march_state start = {.size = sizeof start, .A = u, .E = E};
-    ck_assert_int_eq(dvi_multisymplectic_laws(&w.terms, &start, 6, 3, law, &count), DVI_OK);
-    ck_assert_double_lt(law[0].error, 1e-13);
-    ck_assert_double_lt(law[1].error, 1e-12);
-  }
 }
 END_TEST
 
@@ -434,8 +284,8 @@ START_TEST(bad_conditions_and_symmetries_are_refused)
   refuse(&w.terms, DVI_BAD_ARGUMENT, "no part \"front\"");
   lattice_terms(&w), w.condition.component = 1;
   refuse(&w.terms, DVI_BAD_ARGUMENT, "component 1");
-  lattice_terms(&w), w.condition.kind = DVI_FREE, w.condition.robin = 1;
-  refuse(&w.terms, DVI_UNSUPPORTED, "has a flux");
+  lattice_terms(&w), w.condition.kind = DVI_FREE, w.condition.robin = (double)NAN;
+  refuse(&w.terms, DVI_NOT_FINITE, "robin = nan");
   w.cells = 2, lattice_terms(&w);
   w.terms.condition = (dvi_density_condition[]){w.condition, w.condition};
   w.terms.conditions = -1;
@@ -453,6 +303,14 @@ static int failing_wall(int64_t count, double t, const double *x, double *datum,
   return t > 1 ? *(int *)user : 0;
 }
 
+static int failing_wall_rate(int64_t count, double t, const double *x, double *rate, double *second,
+                             void *user)
+{
+  (void)t, (void)x, (void)second, (void)user;
+  for (int64_t i = 0; i < count; i++) rate[i] = 1;
+  return 0;
+}
+
 START_TEST(failures_of_callbacks_leave_a_good_state)
 {
   static const dvi_status expected[] = {DVI_CALLBACK_FAILED, DVI_NOT_FINITE, DVI_CALLBACK_RETRY};
@@ -460,7 +318,7 @@ START_TEST(failures_of_callbacks_leave_a_good_state)
   lattice w = {.step = .1, .fixed = 1};
   lattice_terms(&w);
   w.condition.datum = failing_wall;
-  w.condition.rate = moving_wall_rate;
+  w.condition.rate = failing_wall_rate;
   w.condition.user = &result;
   dvi_march *march = NULL;
   ck_assert_int_eq(dvi_multisymplectic_create(&w.terms, &march), DVI_OK);
@@ -478,17 +336,22 @@ START_TEST(failures_of_callbacks_leave_a_good_state)
 }
 END_TEST
 
+static double slow_hump(double t, const double *x, const void *of)
+{
+  return .1 * hump(t, x, of);
+}
+
 START_TEST(starts_beyond_the_density_leave_the_state)
 {
   lattice w = {.step = .1, .cells = 21, .space = 1. / 6, .time = 1. / 6};
   lattice_terms(&w);
-  w.terms.part = &strings;
+  w.terms.part = &lattice_strings;
   w.terms.parts = 1;
   dvi_march *march = NULL, *same = NULL;
   ck_assert_int_eq(dvi_multisymplectic_create(&w.terms, &march), DVI_OK);
   ck_assert_int_eq(dvi_multisymplectic_create(&w.terms, &same), DVI_OK);
-  lattice_start(march, &w, right_going, NULL);
-  lattice_start(same, &w, right_going, NULL);
+  lattice_start(march, &w, slow_hump, NULL);
+  lattice_start(same, &w, slow_hump, NULL);
   double fast[21];
   for (int i = 0; i < 21; i++) fast[i] = 2;
   const dvi_march_state start = {.size = sizeof start, .E = fast};
@@ -542,9 +405,6 @@ SUITE(lattice_marches)
   tcase_add_loop_test(tests, a_start_forgets_what_was_before, 0, KINDS);
   tcase_add_loop_test(tests, samples_are_continuous_at_levels, 0, KINDS);
   tcase_add_test(tests, damaged_files_and_those_of_others_are_refused);
-  tcase_add_loop_test(tests, walls_may_move, 0, 4);
-  tcase_add_loop_test(tests, cells_may_be_unequal, 0, 2);
-  tcase_add_loop_test(tests, densities_may_be_nonlinear_in_the_rates, 0, 3);
   tcase_add_test(tests, methods_are_read_with_their_weights);
   tcase_add_test(tests, bad_axes_and_weights_are_refused);
   tcase_add_test(tests, bad_steps_are_refused);

@@ -54,7 +54,7 @@ START_TEST(split_turns_a_plane_wave_exactly)
 }
 END_TEST
 
-/* A mode with E = k^2/2 = 2 turns by 2 atan(E dt/2), and by 2 atan((z/2)/(1 - z^2/12)), z = E dt. */
+/* A mode with E = k^2/2 = 2 turns by 2 atan(z/2), and by 2 atan((z/2)/(1 - z^2/12)), z = E dt. */
 START_TEST(gauss_turns_modes_by_diagonal_pade_approximants)
 {
   const double z = 2 * 0.05;
@@ -214,6 +214,8 @@ START_TEST(solitons_go_through_their_peak_as_an_independent_program_finds)
   check_error_of_solitons("midpoint", 0.002, 5.66e-4);
   check_error_of_solitons("midpoint", 0.001, 1.42e-4);
   check_error_of_solitons("split:order=4", 0.004, 8.94e-5);
+  check_error_of_solitons("split:order=4", 0.002, 5.80e-6);
+  check_error_of_solitons("split:order=4", 0.001, 4.45e-7);
 }
 END_TEST
 

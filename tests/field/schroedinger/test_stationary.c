@@ -276,8 +276,8 @@ START_TEST(norm_scales_the_interaction)
 }
 END_TEST
 
-/* Half of the soliton sech(x/2)/2 with mu = -1/8 for beta = -1. The whole one could be anywhere, and
- * Newton's method would not know where. */
+/* Half of the soliton sech(x/2)/2 with mu = -1/8 for beta = -1. The whole one could be anywhere,
+ * and Newton's method would not know where. */
 START_TEST(attraction_makes_a_soliton)
 {
   const dvi_schroedinger_terms terms = {.interaction = -1, .fixed = "right"};

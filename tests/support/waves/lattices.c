@@ -83,6 +83,30 @@ static int whole(int count, double t, const double *x, const double *z, double *
   return 0;
 }
 
+/* Born and Infeld: l = -sqrt(1 - u_t^2 + u_x^2), whose waves in one direction keep their shape, as
+ * u_t^2 = u_x^2. z = (u_t, u_x). */
+static int born_infeld(int count, double t, const double *x, const double *z, double *l,
+                       double *l_z, double *l_zz, void *user)
+{
+  (void)t, (void)x, (void)user;
+  for (int i = 0; i < count; i++) {
+    const double v = z[i], w = z[count + i], square = 1 - v * v + w * w, root = sqrt(square);
+    if (!(square > 0)) return 1;
+    if (l != NULL) l[i] = -root;
+    if (l_z != NULL) l_z[i] = v / root, l_z[count + i] = -w / root;
+    if (l_zz != NULL) {
+      l_zz[i] = (1 + w * w) / (square * root);
+      l_zz[count + i] = -v * w / (square * root);
+      l_zz[2 * count + i] = -(1 - v * v) / (square * root);
+    }
+  }
+  return 0;
+}
+
+static const dvi_jet slopes[] = {{.rate = 1}, {.order = {1, 0, 0}}};
+const dvi_density_part lattice_strings = {
+    .kind = DVI_DENSITY_GENERAL, .variable = slopes, .variables = 2, .density = born_infeld};
+
 /* ---- terms ---- */
 
 static const dvi_jet jets[] = {{.component = 0},

@@ -21,6 +21,9 @@ typedef struct lattice {
   dvi_multisymplectic_terms terms;
 } lattice;
 
+/* A density that is nonlinear in the rate, Born and Infeld's. It fails beyond its domain. */
+extern const dvi_density_part lattice_strings;
+
 /* Fill in the terms, which point into the lattice. */
 const dvi_multisymplectic_terms *lattice_terms(lattice *lattice);
 

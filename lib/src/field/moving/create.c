@@ -104,7 +104,7 @@ static dvi_status check_density(const dvi_moving_terms *t)
                        i, p->pair[i][0], p->pair[i][1], p->variables - 1);
   if (t->mean != NULL && t->mean->mean == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "moving: the mean has no callback");
-  if (t->motion == DVI_MOVING_FREE && !t->translations && t->space_derivative == NULL)
+  if (t->motion != DVI_MOVING_PRESCRIBED && !t->translations && t->space_derivative == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT,
                      "moving: free nodes need the derivative of the density by x: give "
                      "space_derivative, or set translations if l does not depend on x");
@@ -140,11 +140,18 @@ static dvi_status check_ends(const dvi_moving_terms *t)
 
 static dvi_status check_motion(const dvi_moving_terms *t)
 {
-  if (t->motion != DVI_MOVING_FREE && t->motion != DVI_MOVING_PRESCRIBED)
+  const int cells = t->axis.node != NULL ? t->axis.nodes - 1 : t->cells;
+  if (t->motion < DVI_MOVING_FREE || t->motion > DVI_MOVING_EQUAL)
     return dvi__fail(DVI_BAD_ARGUMENT, "moving: there is no motion %d", (int)t->motion);
-  if (t->motion == DVI_MOVING_FREE && t->path != NULL)
+  if (t->motion != DVI_MOVING_PRESCRIBED && t->path != NULL)
     return dvi__fail(DVI_BAD_ARGUMENT,
                      "moving: free nodes have no path: choose DVI_MOVING_PRESCRIBED");
+  if (t->motion != DVI_MOVING_EQUAL && t->stretch != 0)
+    return dvi__fail(DVI_BAD_ARGUMENT, "moving: a stretch needs DVI_MOVING_EQUAL");
+  if (t->motion == DVI_MOVING_EQUAL && cells < 3)
+    return dvi__fail(DVI_BAD_SIZE, "moving: arcs of one length need at least 3 cells, not %d",
+                     cells);
+  DVI_TRY(check_number("the stretch", t->stretch));
   if (t->motion == DVI_MOVING_PRESCRIBED && (t->mu != 0 || t->kappa != 0))
     return dvi__fail(DVI_BAD_ARGUMENT,
                      "moving: mu and kappa act on free nodes, but the nodes are prescribed: leave "
@@ -221,6 +228,7 @@ static dvi_status make(const dvi_moving_terms *t, dvi_moving *m)
   m->from = t->axis.from;
   m->length = t->axis.to - t->axis.from;
   m->motion = t->motion;
+  m->stretch = t->stretch;
   m->mu = t->mu;
   m->kappa = t->kappa;
   m->viscosity = t->viscosity;
@@ -260,6 +268,7 @@ void dvi_moving_destroy(dvi_moving **moving)
   dvi__release(m->drag.entry);
   dvi__pattern_clear(&m->pattern);
   dvi__pattern_clear(&m->drag_pattern);
+  dvi__pattern_clear(&m->arcs);
   dvi__release(m);
   *moving = NULL;
 }

@@ -13,13 +13,14 @@ static const double same_time = 1e-6;
 int dvi__moving_follow(const dvi_moving *m, double t, double X, double *x, double *rate)
 {
   if (m->path_step == 0) return m->path(1, t, &X, x, rate, m->user);
-  double next, unused;
+  double next = 0, unused;
   const double count = floor(t / m->path_step + same_time), from = count * m->path_step;
   int returned = m->path(1, from, &X, x, &unused, m->user);
   if (returned == 0) returned = m->path(1, (count + 1) * m->path_step, &X, &next, &unused, m->user);
+  if (returned != 0) return returned;
   *rate = (next - *x) / m->path_step;
   *x += (t - from) * *rate;
-  return returned;
+  return 0;
 }
 
 /* Give the position of node k of reference and its rate. */

@@ -95,6 +95,7 @@ dvi_status dvi__moving_lay_out(dvi_moving *m)
     m->bend.first = m->periodic ? -1 : 0;
     DVI_TRY(place(m, &m->pattern, &m->bend));
   }
+  if (m->motion == DVI_MOVING_EQUAL) DVI_TRY(dvi__moving_lay_out_arcs(m));
   if (m->viscosity == 0) return DVI_OK;
   DVI_TRY(make_pattern(m, 2, &m->drag_pattern));
   m->drag = (dvi__stencils){.count = m->cells, .nodes = 4, .first = -1};

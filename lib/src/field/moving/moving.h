@@ -36,7 +36,7 @@ struct dvi_moving {
   int cells, nodes; /* nodes without the periodic last one */
   int components, numbers, unknowns, periodic, points;
   dvi_moving_motion motion;
-  double mu, kappa, viscosity, dispersion, path_step;
+  double mu, kappa, stretch, viscosity, dispersion, path_step;
   double *node; /* [cells+1] positions of reference */
   double from, length, jump[DVI_MOVING_COMPONENTS_MAX];
   double end[2][DVI_MOVING_COMPONENTS_MAX]; /* fixed values */
@@ -52,8 +52,8 @@ struct dvi_moving {
   int (*path)(int count, double t, const double *X, double *x, double *rate, void *user);
   void *user;
   double gauss[DVI_MOVING_POINTS_MAX], weight[DVI_MOVING_POINTS_MAX];
-  dvi__stencils cell, bend, drag; /* of 2, 3 and 4 nodes */
-  dvi__pattern pattern, drag_pattern;
+  dvi__stencils cell, bend, drag;                         /* of 2, 3 and 4 nodes */
+  dvi__pattern pattern, drag_pattern, arcs;               /* arcs: gradients of the constraints */
   dvi__number_translation translation[DVI__NODE_NUMBERS]; /* the symmetries */
 };
 
@@ -112,6 +112,24 @@ dvi_status dvi__moving_check(const dvi_moving *m, const dvi__moving_state *state
 int dvi__moving_drag(double t, const double *q, const double *v, double *F, void *user);
 int dvi__moving_drag_jacobian(double t, const double *q, const double *v, double *F_q, double *F_v,
                               void *user);
+
+/* The constraints of DVI_MOVING_EQUAL: one for each pair of cells side by side, their pattern, and
+ * the callbacks of a dvi_holonomic. */
+dvi_status dvi__moving_lay_out_arcs(dvi_moving *m);
+int dvi__moving_arc_value(double t, const double *q, double *phi, void *user);
+int dvi__moving_arc_gradient(double t, const double *q, double *phi_q, void *user);
+int dvi__moving_arc_hessian(double t, const double *q, const double *w, double *phi_w_qq,
+                            void *user);
+
+/* A wave at the nodes: positions and velocities [cells+1], values and derivatives
+ * [components*(cells+1)]. */
+typedef struct dvi__wave_values {
+  double *x, *velocity, *u, *u_x, *u_t;
+} dvi__wave_values;
+
+/* Move the nodes along a wave to arcs of one length, and give them velocities that keep that. */
+dvi_status dvi__moving_even_out(const dvi_moving *m, dvi_moving_wave *wave, void *user,
+                                dvi__wave_values *w);
 
 /* Place the nodes of reference so that the monitor has one integral in all cells. */
 dvi_status dvi__moving_grade(const dvi_moving_terms *terms, dvi_moving *m);

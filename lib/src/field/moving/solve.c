@@ -14,10 +14,10 @@
 #include "num/finite.h"
 #include "num/linear.h"
 
-enum { ITERATIONS = 500, STAGE = 10 /* by which kappa is lowered */ };
+enum { ITERATIONS = 500, STAGES = 10 /* values of kappa, each a tenth of the last one */ };
 
 static const double floor_of_gradient = 1e-12, most_damping = 1e12, least_damping = 1e-12,
-                    least_kappa = 1e-9;
+                    next_damping = 1e-4;
 
 typedef struct statics {
   dvi_moving m; /* with the kappa of this stage */
@@ -89,14 +89,14 @@ static dvi_status find_step(statics *s)
 static dvi_status take_step(statics *s, int *taken)
 {
   const double rounding = 1e-14 * s->m.cells * fabs(s->energy);
-  for (; s->damping < most_damping; s->damping = fmax(4 * s->damping, least_damping * 1e8)) {
+  for (; s->damping < most_damping; s->damping = fmax(4 * s->damping, next_damping)) {
     double energy;
     dvi_status status = find_step(s);
     if (status == DVI_OK) status = evaluate(s, s->trial, &energy, NULL, NULL);
     if (status < 0 && status != DVI_SINGULAR) return status;
     if (status != DVI_OK || energy > s->energy + rounding) continue;
     memcpy(s->q, s->trial, (size_t)s->m.unknowns * sizeof *s->q);
-    s->damping = s->damping > least_damping ? s->damping / STAGE : 0;
+    s->damping = s->damping > least_damping ? s->damping / 10 : 0;
     *taken = 1;
     return DVI_OK;
   }
@@ -128,11 +128,10 @@ static dvi_status lower_kappa(statics *s, dvi_moving_report *report)
 {
   const double kappa = s->m.kappa;
   DVI_TRY(evaluate(s, s->q, &s->energy, NULL, NULL));
-  double stage = s->m.motion == DVI_MOVING_FREE ? fabs(s->energy) / s->m.length : 0;
-  const double last = fmax(kappa, least_kappa * stage);
-  for (; stage > last; stage /= STAGE) {
-    s->m.kappa = stage;
-    DVI_TRY(minimise(s, &report->residual));
+  const double most = fabs(s->energy) / s->m.length;
+  for (int k = 0; k < STAGES && s->m.motion == DVI_MOVING_FREE; k++) {
+    s->m.kappa = most * pow(10, -k);
+    if (s->m.kappa > kappa) DVI_TRY(minimise(s, &report->residual));
   }
   s->m.kappa = kappa;
   DVI_TRY(minimise(s, &report->residual));
@@ -157,6 +156,9 @@ dvi_status dvi_moving_solve(const dvi_moving *moving, double *q, dvi_moving_repo
     return dvi__fail(DVI_BAD_ARGUMENT, "moving: a field and coordinates are needed");
   const size_t n = (size_t)moving->unknowns;
   const size_t entries = (size_t)dvi__pattern_entries(&moving->pattern);
+  if (moving->motion == DVI_MOVING_EQUAL)
+    return dvi__fail(DVI_UNSUPPORTED, "moving: static states with arcs of one length are not "
+                                      "found: let the nodes be free, or prescribe them");
   DVI_TRY(dvi__moving_check(moving, &(dvi__moving_state){.q = q}));
   double *work = DVI_NEW(double, 4 * n + 2 * entries);
   statics s = {.m = *moving, .q = work, .trial = work + n};

@@ -46,7 +46,7 @@ static dvi_status check_finite(const dvi_moving *m, const double *q, const doubl
 static dvi_status check_mass(const dvi_moving *m, const dvi__moving_state *state)
 {
   double y[6 * DVI__NODE_NUMBERS];
-  if (m->mu > 0 || m->motion != DVI_MOVING_FREE) return DVI_OK;
+  if (m->mu > 0 || !dvi__moving_is_free(m)) return DVI_OK;
   for (int k = 0; k < m->nodes; k++) {
     double corner = 0, size = 0;
     if (m->unknown[k * m->numbers] < 0) continue;
@@ -120,12 +120,8 @@ dvi_status dvi_moving_project(const dvi_moving *moving, double t, const double *
 
 /* ---- start ---- */
 
-/* Numbers at all nodes. */
-typedef struct wave_values {
-  double *x, *velocity, *u, *u_x, *u_t;
-} wave_values;
-
-static dvi_status evaluate(const dvi_moving *m, dvi_moving_wave *wave, void *user, wave_values *w)
+static dvi_status evaluate(const dvi_moving *m, dvi_moving_wave *wave, void *user,
+                           dvi__wave_values *w)
 {
   const int nodes = m->cells + 1;
   memcpy(w->x, m->node, (size_t)nodes * sizeof *w->x);
@@ -138,6 +134,7 @@ static dvi_status evaluate(const dvi_moving *m, dvi_moving_wave *wave, void *use
   if (returned != 0)
     return dvi__fail(DVI_CALLBACK_FAILED, "moving: the wave returned %d", returned);
   if (!m->periodic && dvi__moving_is_free(m)) w->velocity[0] = w->velocity[m->cells] = 0;
+  if (m->motion == DVI_MOVING_EQUAL) DVI_TRY(dvi__moving_even_out(m, wave, user, w));
   for (int i = 0; i < nodes * m->components; i++) w->u_t[i] += w->u_x[i] * w->velocity[i % nodes];
   return DVI_OK;
 }
@@ -150,7 +147,7 @@ dvi_status dvi_moving_start(const dvi_moving *moving, dvi_moving_wave *wave, voi
   const size_t nodes = (size_t)moving->cells + 1, values = nodes * (size_t)moving->components;
   double *work = DVI_NEW(double, 3 * (nodes + values));
   if (work == NULL) return dvi__fail(DVI_NO_MEMORY, "moving: no memory for a wave");
-  wave_values w = {.x = work, .velocity = work + nodes, .u = work + 2 * nodes};
+  dvi__wave_values w = {.x = work, .velocity = work + nodes, .u = work + 2 * nodes};
   w.u_x = w.u + values;
   w.u_t = w.u_x + values;
   dvi_status status = evaluate(moving, wave, user, &w);

@@ -50,7 +50,7 @@ static int has_variable(const dvi_moving *m, int component, int rate)
 /* Tell if a translation of one number of all nodes leaves the Lagrangian as it is. */
 static int is_symmetry(const dvi_moving *m, int number)
 {
-  if (number == 0) return m->periodic && m->translations && m->motion == DVI_MOVING_FREE;
+  if (number == 0) return m->periodic && m->translations && dvi__moving_is_free(m);
   const int fixed = !m->periodic && (m->fixed[0] || m->fixed[1]);
   return !fixed && m->mean.mean == NULL && !has_variable(m, number - 1, 0);
 }
@@ -89,6 +89,41 @@ static dvi_status check_rates(const dvi_moving *m)
   return DVI_OK;
 }
 
+static dvi_lagrangian lagrangian_of(dvi_moving *m)
+{
+  const dvi_pattern pattern = view(&m->pattern);
+  return (dvi_lagrangian){.value = value,
+                          .gradient = gradient,
+                          .hessian = hessian,
+                          .qq = pattern,
+                          .qv = pattern,
+                          .vv = pattern,
+                          .user = m};
+}
+
+static dvi_force viscosity_of(dvi_moving *m)
+{
+  const dvi_pattern pattern = view(&m->drag_pattern);
+  return (dvi_force){.name = "viscosity",
+                     .value = dvi__moving_drag,
+                     .jacobian = dvi__moving_drag_jacobian,
+                     .by_q = pattern,
+                     .by_v = pattern,
+                     .user = m};
+}
+
+static dvi_holonomic arcs_of(dvi_moving *m)
+{
+  return (dvi_holonomic){.name = "arcs",
+                         .count = m->cells - 1,
+                         .value = dvi__moving_arc_value,
+                         .gradient = dvi__moving_arc_gradient,
+                         .hessian = dvi__moving_arc_hessian,
+                         .gradients = view(&m->arcs),
+                         .qq = view(&m->pattern),
+                         .user = m};
+}
+
 dvi_status dvi_moving_system(dvi_moving *moving, dvi_system **system)
 {
   if (moving == NULL || system == NULL)
@@ -96,27 +131,19 @@ dvi_status dvi_moving_system(dvi_moving *moving, dvi_system **system)
   *system = NULL;
   DVI_TRY(check_rates(moving));
   dvi_symmetry symmetry[DVI__NODE_NUMBERS];
-  const dvi_pattern pattern = view(&moving->pattern), drag = view(&moving->drag_pattern);
-  const dvi_lagrangian lagrangian = {.value = value,
-                                     .gradient = gradient,
-                                     .hessian = hessian,
-                                     .qq = pattern,
-                                     .qv = pattern,
-                                     .vv = pattern,
-                                     .user = moving};
-  const dvi_force viscosity = {.name = "viscosity",
-                               .value = dvi__moving_drag,
-                               .jacobian = dvi__moving_drag_jacobian,
-                               .by_q = drag,
-                               .by_v = drag,
-                               .user = moving};
   const int symmetries = find_symmetries(moving, symmetry);
+  const int is_viscous = moving->viscosity > 0, is_equal = moving->motion == DVI_MOVING_EQUAL;
+  const dvi_lagrangian lagrangian = lagrangian_of(moving);
+  const dvi_force viscosity = viscosity_of(moving);
+  const dvi_holonomic arcs = arcs_of(moving);
   const dvi_system_terms terms = {.dimension = moving->unknowns,
                                   .lagrangian = &lagrangian,
                                   .symmetries = symmetries > 0 ? symmetry : NULL,
                                   .symmetry_count = symmetries,
-                                  .forces = moving->viscosity > 0 ? &viscosity : NULL,
-                                  .force_count = moving->viscosity > 0,
+                                  .forces = is_viscous ? &viscosity : NULL,
+                                  .force_count = is_viscous,
+                                  .holonomics = is_equal ? &arcs : NULL,
+                                  .holonomic_count = is_equal,
                                   .autonomous = moving->path == NULL &&
                                                 !moving->part.depends_on_time};
   return dvi_system_create(&terms, system);

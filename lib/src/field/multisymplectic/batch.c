@@ -165,10 +165,11 @@ static dvi_status check_finite(const dvi__batch *b, const char *name, size_t cou
 {
   const ptrdiff_t at = dvi__first_not_finite(count, x);
   if (at < 0) return DVI_OK;
+  const ptrdiff_t point = at % b->count;
+  const long long cell = b->cell + point / b->lattice->points;
   return dvi__fail(DVI_NOT_FINITE,
                    "multisymplectic: %s of the density %s is %g at t = %g, %s = %g in cell %lld",
-                   name, b->part->name, x[at], b->t, b->lattice->axis[0].name, b->x[at % b->count],
-                   (long long)(b->cell + at % b->count / b->lattice->points));
+                   name, b->part->name, x[at], b->t, b->lattice->axis[0].name, b->x[point], cell);
 }
 
 dvi_status dvi__batch_evaluate(const dvi__batch *b, int wants)

@@ -24,7 +24,7 @@ typedef struct cell_matrices {
 
 static dvi_status allocate(const dvi__lattice *lattice, cell_matrices *m)
 {
-  const size_t n = (size_t)(lattice->corners * lattice->components),
+  const size_t n = (size_t)lattice->corners * (size_t)lattice->components,
                components = (size_t)lattice->components;
   m->n = (int)n;
   m->K = DVI_NEW(double, 2 * n * n);
@@ -80,7 +80,7 @@ static void add_point(const dvi__batch *b, int q, const dvi__lattice_variable *r
           lattice->shape[1 + column->axis][q][j];
 }
 
-/* Add a part's constant second derivatives, as far as they do not mix rates with other variables. */
+/* Add a part's constant second derivatives, but not those that mix rates with other variables. */
 static dvi_status add_part(const dvi__lattice *lattice, const dvi__lattice_part *part, int64_t cell,
                            cell_matrices *m)
 {

@@ -156,9 +156,10 @@ static dvi_status make_symmetries(const dvi_multisymplectic_terms *terms, dvi__l
     return dvi__fail(DVI_NO_MEMORY, "multisymplectic: no memory for symmetries");
   char *next = lattice->names;
   for (int i = 0; i < terms->symmetries; i++) {
-    strcpy(next, terms->symmetry[i].name);
+    const size_t size = strlen(terms->symmetry[i].name) + 1;
+    memcpy(next, terms->symmetry[i].name, size);
     lattice->symmetry[i].name = next;
-    next += strlen(next) + 1;
+    next += size;
   }
   lattice->symmetries = terms->symmetries;
   return DVI_OK;
@@ -168,11 +169,10 @@ static dvi_status make_symmetries(const dvi_multisymplectic_terms *terms, dvi__l
 
 static int is_held(const dvi__lattice *lattice, int d, int end)
 {
-  const dvi__lattice_axis *a = &lattice->axis[d];
   for (int64_t i = 0; i < lattice->size; i++) {
-    double x[DVI_AXES_MAX];
-    dvi__lattice_vertex(lattice, i % lattice->vertices, x);
-    if (x[d] == a->node[end * a->cells] && lattice->unknown[i] >= 0) return 0;
+    int index[DVI_AXES_MAX];
+    dvi__lattice_vertex_index(lattice, i % lattice->vertices, index);
+    if (index[d] == end * lattice->axis[d].cells && lattice->unknown[i] >= 0) return 0;
   }
   return 1;
 }
@@ -234,6 +234,8 @@ static void clear_condition(dvi__lattice_condition *condition)
   dvi__release(condition->place);
   dvi__release(condition->x);
   dvi__release(condition->datum);
+  dvi__release(condition->weight);
+  dvi__release(condition->shape);
 }
 
 void dvi__lattice_clear(dvi__lattice *lattice)

@@ -17,10 +17,15 @@ typedef struct identity {
   int64_t step;
 } identity;
 
+static uint64_t hash_integer(uint64_t hash, int64_t number)
+{
+  return dvi__hash(hash, sizeof number, &number);
+}
+
 static uint64_t hash_axes(const dvi__lattice *lattice, uint64_t hash)
 {
-  const int counts[] = {lattice->axes, lattice->components, lattice->parts, lattice->unknowns};
-  hash = dvi__hash(hash, sizeof counts, counts);
+  hash = hash_integer(hash_integer(hash, lattice->axes), lattice->components);
+  hash = hash_integer(hash_integer(hash, lattice->parts), lattice->unknowns);
   hash = dvi__hash(hash, sizeof lattice->time_weight, &lattice->time_weight);
   for (int d = 0; d < lattice->axes; d++) {
     const dvi__lattice_axis *a = &lattice->axis[d];

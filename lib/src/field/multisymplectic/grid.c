@@ -57,6 +57,7 @@ dvi_status dvi__check_weight(double weight, const char *axis)
 static dvi_status make_axis(const dvi_multisymplectic_terms *terms, int d, dvi__lattice_axis *a)
 {
   static const char *const usual[] = {"x", "y", "z"};
+  static const char *const sides[][2] = {{"left", "right"}, {"bottom", "top"}, {"back", "front"}};
   const dvi_axis *given = &terms->axis[d];
   const int has_nodes = given->node != NULL || given->nodes != 0;
   const char *name = given->name != NULL ? given->name : usual[d];
@@ -72,6 +73,7 @@ static dvi_status make_axis(const dvi_multisymplectic_terms *terms, int d, dvi__
   a->cells = has_nodes ? given->nodes - 1 : terms->cells[d];
   DVI_TRY(check_axis(given, a));
   DVI_TRY(dvi__check_weight(terms->weights.space[d], a->name));
+  for (int end = 0; end < 2; end++) a->side[end] = sides[d][end];
   a->is_periodic = given->periodic != 0;
   a->vertices = a->cells + !a->is_periodic;
   a->weight = terms->weights.space[d];
@@ -128,6 +130,11 @@ static void split(const dvi__lattice *lattice, int64_t number, int of_cells, int
 void dvi__lattice_cell(const dvi__lattice *lattice, int64_t cell, int *index)
 {
   split(lattice, cell, 1, index);
+}
+
+void dvi__lattice_vertex_index(const dvi__lattice *lattice, int64_t vertex, int *index)
+{
+  split(lattice, vertex, 0, index);
 }
 
 void dvi__lattice_vertex(const dvi__lattice *lattice, int64_t vertex, double *x)

@@ -20,6 +20,7 @@ typedef struct dvi__two_points {
 /* An axis. Vertices are the nodes but for the last one of a periodic axis. */
 typedef struct dvi__lattice_axis {
   char name[32], momentum[48]; /* and of what is observed */
+  const char *side[2];         /* parts of the boundary */
   int cells, vertices, is_periodic;
   double *node; /* [cells+1] */
   double weight;
@@ -42,12 +43,17 @@ typedef struct dvi__lattice_part {
   dvi__two_points time;
 } dvi__lattice_part;
 
-/* A condition, with its vertices. */
+/* A condition: fixed values at vertices, or a flux through faces of cells at the boundary, at
+ * points with their corners. */
 typedef struct dvi__lattice_condition {
   dvi_density_condition declared;
   int64_t count;
-  int *place;        /* [count] in u */
-  double *x, *datum; /* [axes*count] places, [count] */
+  int corners;
+  int *place;     /* [count*corners] in u */
+  double *shape;  /* [count*corners] functions of the corners, of a flux */
+  double *x;      /* [axes*count] places */
+  double *datum;  /* [count] */
+  double *weight; /* [count], of a flux */
 } dvi__lattice_condition;
 
 typedef struct dvi__lattice {
@@ -83,7 +89,8 @@ dvi_status dvi__lattice_make_cells(dvi__lattice *lattice);
 dvi_status dvi__check_weight(double weight, const char *axis);
 dvi__two_points dvi__two_points_of(double weight);
 
-/* Give the place x [axes] of a vertex, and the number of a cell on each axis. */
+/* Give the numbers of a vertex and of a cell on each axis, and the place x [axes] of a vertex. */
+void dvi__lattice_vertex_index(const dvi__lattice *lattice, int64_t vertex, int *index);
 void dvi__lattice_vertex(const dvi__lattice *lattice, int64_t vertex, double *x);
 void dvi__lattice_cell(const dvi__lattice *lattice, int64_t cell, int *index);
 
@@ -93,6 +100,17 @@ int64_t dvi__lattice_cell_at(const dvi__lattice *lattice, int64_t vertex, int co
 /* Copy the conditions, and number the unknowns. */
 dvi_status dvi__lattice_make_conditions(const dvi_multisymplectic_terms *terms,
                                         dvi__lattice *lattice);
+
+/* Tell if a part's name is that of an end of an axis, and a condition that of a component. */
+int dvi__lattice_is_part(const char *part, const dvi__lattice_axis *axis, int end);
+int dvi__lattice_is_of(const dvi_density_condition *given, int component);
+
+/* Count the points of a flux, and keep them unless `kept` is NULL. */
+int64_t dvi__lattice_take_faces(const dvi__lattice *lattice, const dvi_density_condition *given,
+                                dvi__lattice_condition *kept);
+
+/* Set the datum of a condition at time t. */
+dvi_status dvi__lattice_datum(const dvi__lattice_condition *condition, double t);
 
 /* Put the fixed values at time t into u [size], and their rates into `rate` [size], unless it is
  * NULL. */
@@ -153,6 +171,16 @@ dvi_status dvi__row_gradient(const dvi__lattice *lattice, const dvi__row *row, d
 /* Set them to the second derivative of the row's action times v, another two levels. */
 dvi_status dvi__row_second(const dvi__lattice *lattice, const dvi__row *row, const dvi__row *v,
                            double *lower, double *upper);
+
+/* Add what fluxes through the boundary add to these three. */
+dvi_status dvi__row_add_fluxes(const dvi__lattice *lattice, const dvi__row *row, double *lower,
+                               double *upper);
+void dvi__row_add_second_of_fluxes(const dvi__lattice *lattice, const dvi__row *v, double *lower,
+                                   double *upper);
+dvi_status dvi__row_add_energy_of_fluxes(const dvi__lattice *lattice, const dvi__row *row,
+                                         double *energy);
+
+void dvi__lattice_add_matrix_of_fluxes(const dvi__lattice *lattice, double *values);
 
 /* Set p [size] to the momenta of a level u[0] with a rate. */
 dvi_status dvi__row_momenta(const dvi__lattice *lattice, const dvi__row *row, double *p);

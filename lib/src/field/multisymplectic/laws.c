@@ -1,10 +1,10 @@
 /* The form formula and Noether's theorem on a set of cells in space and time.
  *
  * Of the action S of any set of cells, with the second derivative H, and any two solutions V and W
- * of the linearised equations, (H V).W = (H W).V by symmetry. At vertices around which all cells are
+ * of the linearised equations, (H V).W = (H W).V by symmetry. At vertices that have all their cells
  * in the set H V and H W vanish. So does the sum over the other vertices of V.H W - W.H V. In the
  * same way the sum over the latter of dS/du.xi(u) vanishes for a symmetry xi. Values that are fixed
- * count among the latter. Source: Marsden, Patrick and Shkoller 1998, secs. 4 and 5. */
+ * count among the latter. Source: Marsden, Patrick and Shkoller 1998, sec. 4. */
 #include "field/multisymplectic/laws.h"
 
 #include <float.h>

@@ -5,7 +5,7 @@
  * constant coefficients the product rule D(a b) = A a D b + D a A b gives
  *     sum over axes n of D_n T_mn = 0,    T_mn = z_m l_{z_n} - (n = m) l,
  * with m for time or an axis, where T_mn is that of the mean of z over the other axes.
- * Source: Bridges and Reich 2001, sec. 3. */
+ * Source: Bridges and Reich 2001. */
 #include <math.h>
 #include <string.h>
 

@@ -1,5 +1,6 @@
 /* The matrix of a step: minus the second derivative of a row's action by its lower and its upper
- * level, close to the mass over dt. It decides how fast the equations of a level converge, and not their solution. */
+ * level, close to the mass over dt. It decides how fast the equations of a level converge, and not
+ * what their solution is. */
 #include <math.h>
 #include <string.h>
 
@@ -107,9 +108,19 @@ static void meet_in_space(const dvi__lattice *lattice, const dvi__lattice_variab
           m->meets[j][i][b->component][a->component] = 1;
 }
 
+/* Fluxes depend on values. */
+static void meet_in_fluxes(const dvi__lattice *lattice, meetings *m)
+{
+  for (int c = 0; c < lattice->components && lattice->time_weight > 0; c++) {
+    const dvi__lattice_variable value = {c, 0, -1};
+    meet_in_space(lattice, &value, &value, m);
+  }
+}
+
 static void find_meetings(const dvi__lattice *lattice, meetings *m)
 {
   *m = (meetings){0};
+  if (lattice->conditions > 0) meet_in_fluxes(lattice, m);
   for (int i = 0; i < lattice->corners; i++)
     for (int c = 0; c < lattice->components; c++) m->meets[i][i][c][c] = 1;
   for (int i = 0; i < lattice->parts; i++) {
@@ -236,5 +247,6 @@ static dvi_status add_matrix(void *of, const dvi__batch *b)
 dvi_status dvi__lattice_matrix(const dvi__lattice *lattice, const dvi__row *row, double *values)
 {
   memset(values, 0, (size_t)dvi__pattern_entries(&lattice->pattern) * sizeof *values);
+  dvi__lattice_add_matrix_of_fluxes(lattice, values);
   return dvi__row_visit(lattice, row, DVI__WANT_L_ZZ, add_matrix, values);
 }

@@ -80,7 +80,8 @@ dvi_status dvi__row_gradient(const dvi__lattice *lattice, const dvi__row *row, d
 {
   sums s = {lower, upper, NULL};
   clear(lattice, &s);
-  return dvi__row_visit(lattice, row, DVI__WANT_L_Z, add_first, &s);
+  DVI_TRY(dvi__row_visit(lattice, row, DVI__WANT_L_Z, add_first, &s));
+  return dvi__row_add_fluxes(lattice, row, lower, upper);
 }
 
 dvi_status dvi__row_second(const dvi__lattice *lattice, const dvi__row *row, const dvi__row *v,
@@ -88,6 +89,7 @@ dvi_status dvi__row_second(const dvi__lattice *lattice, const dvi__row *row, con
 {
   sums s = {lower, upper, v};
   clear(lattice, &s);
+  dvi__row_add_second_of_fluxes(lattice, v, lower, upper);
   return dvi__row_visit(lattice, row, DVI__WANT_L_ZZ, add_second, &s);
 }
 
@@ -162,6 +164,7 @@ dvi_status dvi__row_energy(const dvi__lattice *lattice, const dvi__row *row, dou
       DVI_TRY(visit_at(lattice, row, &times, DVI__WANT_L | DVI__WANT_L_Z, add_energy, &e));
     }
   }
+  DVI_TRY(dvi__row_add_energy_of_fluxes(lattice, row, &e.sum));
   *found = e.sum;
   return DVI_OK;
 }

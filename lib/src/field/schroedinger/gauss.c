@@ -39,7 +39,7 @@ struct dvi__gauss {
 
 /* ---- coefficients ---- */
 
-/* a_ij, the integral of Lagrange's polynomial j from 0 to c_i, by the rule itself, which is exact. */
+/* a_ij, the integral of Lagrange's polynomial j from 0 to c_i, by the rule, which is exact. */
 static void integrate_basis(int s, const double *c, const double *b, double (*A)[MOST])
 {
   for (int i = 0; i < s; i++)

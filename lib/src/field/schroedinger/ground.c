@@ -6,9 +6,9 @@
  *     [ -(M psi)^T                        0   ] [ dmu  ] = [ (psi.M psi - N)/2     ]
  *
  * as one sparse system with a border, or for fourier by conjugate gradients on the plane that is
- * tangent to the sphere, where the matrix is positive definite at a minimum of E. The lowest mode is
- * followed from beta = 0 in steps that shrink where Newton's method fails. Source: Bao and Cai 2013,
- * sec. 3. */
+ * tangent to the sphere, where the matrix is positive definite at a minimum of E. The lowest mode
+ * is followed from beta = 0 in steps that shrink where Newton's method fails. Source: Bao and Cai
+ * 2013, sec. 3. */
 #include <math.h>
 #include <string.h>
 
@@ -133,8 +133,8 @@ static int is_positive(ground *g)
   return fmin(-least, most) <= 1e-2 * fmax(-least, most);
 }
 
-/* Correct until corrections are roundings. DVI_NOT_CONVERGED or DVI_SINGULAR if the state is too far
- * from the guess. */
+/* Correct until corrections are roundings. DVI_NOT_CONVERGED or DVI_SINGULAR if the state is too
+ * far from the guess. */
 static dvi_status converge(ground *g)
 {
   const int64_t n = g->s->free;

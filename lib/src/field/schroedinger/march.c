@@ -136,11 +136,21 @@ static double time_of(const void *self)
   return m->t;
 }
 
+/* Beside a strong wave, pairs of modes whose kinetic phases turn by pi in a step are in resonance
+ * with it (Weideman and Herbst 1986). Cayley's phases stay below pi. */
+static double bound_of(const dvi__wave_march *m)
+{
+  const dvi_schroedinger *s = m->s;
+  const double pi = 3.141592653589793;
+  if (!m->method.is_split || !s->is_fourier || s->beta == NULL) return INFINITY;
+  return pi * s->hbar / dvi__largest((size_t)s->free, s->diagonal);
+}
+
 static void facts_of(const void *self, dvi_march_facts *facts)
 {
   const dvi__wave_march *m = self;
   facts->step = facts->longest = m->dt;
-  facts->bound = INFINITY;
+  facts->bound = bound_of(m);
   facts->steps = m->step;
   facts->updates = m->step * m->s->free;
 }

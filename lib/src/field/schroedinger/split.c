@@ -7,7 +7,8 @@
  *                (M + i h/(2 hbar) T) m = M psi, psi <- 2 m - psi (Cayley) on sparse spaces.
  * A step is half a potential step, a kinetic one and half a potential one, with V at both its ends.
  * Order 2, symmetric. Triple jumps S(g h) S((1 - 2 g) h) S(g h) with g = 1/(2 - 2^(1/(p+1))) raise
- * the order p by 2. Source: Strang 1968; Yoshida 1990; Stern and Grinspun 2009 for Cayley's part. */
+ * the order p by 2. Source: Strang 1968; Yoshida 1990; Stern and Grinspun 2009 for Cayley's part.
+ */
 #include <math.h>
 #include <string.h>
 

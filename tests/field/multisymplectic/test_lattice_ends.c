@@ -1,0 +1,230 @@
+/* labels: unit */
+/* Boundaries that move or are held by springs, unequal cells, and densities of other kinds. */
+#include <dvi/dvi.h>
+#include <math.h>
+
+#include "support/suite.h"
+#include "support/waves/lattices.h"
+
+static const double pi = 3.14159265358979323846;
+
+static void advance(dvi_march *march, double t)
+{
+  const dvi_status status = dvi_march_advance(march, t);
+  ck_assert_msg(status == DVI_OK, "%s", dvi_last_error());
+}
+
+/* ---- conditions ---- */
+
+static int moving_wall(int64_t count, double t, const double *x, double *datum, void *user)
+{
+  (void)user;
+  for (int64_t i = 0; i < count; i++) datum[i] = sin(t - x[i]);
+  return 0;
+}
+
+static int moving_wall_rate(int64_t count, double t, const double *x, double *rate, double *second,
+                            void *user)
+{
+  (void)second, (void)user;
+  for (int64_t i = 0; i < count; i++) rate[i] = cos(t - x[i]);
+  return 0;
+}
+
+static double sine_wave(double t, const double *x, const void *of)
+{
+  (void)of;
+  return sin(t - x[0]);
+}
+
+/* u = sin(t - x) on [0,1] between walls that move, of order 2. */
+START_TEST(walls_may_move)
+{
+  static const double weight[][2] = {{0, 0}, {1. / 6, 1. / 6}, {.25, .25}, {1. / 6, .25}};
+  double before = 0;
+  for (int cells = 20; cells <= 160; cells *= 2) {
+    lattice w = {.cells = cells,
+                 .to = 1,
+                 .fixed = 1,
+                 .space = weight[_i][0],
+                 .time = weight[_i][1],
+                 .step = .8 / cells};
+    lattice_terms(&w);
+    w.condition.datum = moving_wall;
+    w.condition.rate = moving_wall_rate;
+    dvi_march *march = NULL;
+    ck_assert_int_eq(dvi_multisymplectic_create(&w.terms, &march), DVI_OK);
+    lattice_start(march, &w, sine_wave, NULL);
+    advance(march, 2);
+    const double error = lattice_distance(march, &w, sine_wave, NULL);
+    if (cells > 40) ck_assert_double_eq_tol(log2(before / error), 2, 0.2);
+    before = error;
+    dvi_march_destroy(&march);
+  }
+}
+END_TEST
+
+/* du/dn of sin(t - x). */
+static int moving_flux(int64_t count, double t, const double *x, double *datum, void *user)
+{
+  (void)user;
+  for (int64_t i = 0; i < count; i++) datum[i] = (x[i] < .5 ? 1 : -1) * cos(t - x[i]);
+  return 0;
+}
+
+START_TEST(fluxes_may_move)
+{
+  static const double weight[][2] = {{0, 0}, {1. / 6, 1. / 6}, {1. / 6, .25}};
+  double before = 0;
+  for (int cells = 20; cells <= 160; cells *= 2) {
+    lattice w = {.cells = cells,
+                 .to = 1,
+                 .fixed = 1,
+                 .space = weight[_i][0],
+                 .time = weight[_i][1],
+                 .step = .8 / cells};
+    lattice_terms(&w);
+    w.condition.kind = DVI_FREE;
+    w.condition.datum = moving_flux;
+    w.condition.rate = moving_wall_rate; /* it tells that the datum moves */
+    dvi_march *march = NULL;
+    ck_assert_int_eq(dvi_multisymplectic_create(&w.terms, &march), DVI_OK);
+    lattice_start(march, &w, sine_wave, NULL);
+    advance(march, 2);
+    const double error = lattice_distance(march, &w, sine_wave, NULL);
+    if (cells > 40) ck_assert_double_eq_tol(log2(before / error), 2, 0.2);
+    before = error;
+    dvi_march_destroy(&march);
+  }
+}
+END_TEST
+
+/* cos .8x cos .8t cos .8y on a square has the flux -a u with a = .8 tan .8 where x = 1 or y = 1. */
+static double sprung(double t, const double *x, const void *of)
+{
+  (void)of;
+  return cos(.8 * x[0]) * cos(.8 * x[1]) * cos(.8 * sqrt(2) * t);
+}
+
+START_TEST(springs_hold_the_boundary)
+{
+  double before = 0;
+  for (int cells = 16; cells <= 64; cells *= 2) {
+    lattice w = {.axes = 2,
+                 .cells = cells,
+                 .to = 1,
+                 .fixed = 1,
+                 .space = 1. / 6,
+                 .time = 1. / 6,
+                 .step = .5 / cells};
+    lattice_terms(&w);
+    dvi_density_condition ends[2] = {w.condition, w.condition};
+    ends[0].part = "right", ends[1].part = "top";
+    for (int k = 0; k < 2; k++) ends[k].kind = DVI_FREE, ends[k].robin = .8 * tan(.8);
+    w.terms.condition = ends;
+    w.terms.conditions = 2;
+    dvi_march *march = NULL;
+    dvi_law law[DVI_LAWS_MAX];
+    int count;
+    double energy, later;
+    ck_assert_int_eq(dvi_multisymplectic_create(&w.terms, &march), DVI_OK);
+    lattice_start(march, &w, sprung, NULL);
+    ck_assert_int_eq(dvi_march_observe(march, 0, &energy), DVI_OK);
+    advance(march, 2);
+    ck_assert_int_eq(dvi_march_observe(march, 0, &later), DVI_OK);
+    ck_assert_double_eq_tol(energy, later, 1e-13); /* roundings */
+    const double error = lattice_distance(march, &w, sprung, NULL);
+    if (before > 0) ck_assert_double_eq_tol(log2(before / error), 2, 0.2);
+    before = error;
+    dvi_march_destroy(&march);
+    ck_assert_int_eq(dvi_multisymplectic_laws(&w.terms, NULL, 10, 3, law, &count), DVI_OK);
+    ck_assert_double_lt(law[0].error, 1e-14);
+    ck_assert_double_lt(law[1].error, 1e-13);
+  }
+}
+END_TEST
+
+/* Unequal cells, which a free end and a wall close, still have order 2 where they change slowly. */
+static double quarter_wave(double t, const double *x, const void *of)
+{
+  (void)of;
+  return cos(x[0] / 4) * cos(t / 4);
+}
+
+START_TEST(cells_may_be_unequal)
+{
+  double before = 0;
+  for (int cells = 20; cells <= 160; cells *= 2) {
+    double node[161];
+    lattice w = {.cells = cells, .space = _i / 6.0, .time = .25, .step = 4.0 / cells};
+    lattice_terms(&w);
+    for (int i = 0; i <= cells; i++)
+      node[i] = 2 * pi * ((double)i / cells + .05 * sin(2 * pi * i / cells));
+    node[cells] = w.to;
+    w.axis[0].periodic = 0;
+    w.axis[0].node = node;
+    w.axis[0].nodes = cells + 1;
+    w.condition.part = "right";
+    w.terms.conditions = 1;
+    dvi_march *march = NULL;
+    ck_assert_int_eq(dvi_multisymplectic_create(&w.terms, &march), DVI_OK);
+    double energy, later;
+    lattice_start(march, &w, quarter_wave, NULL);
+    ck_assert_int_eq(dvi_march_observe(march, 0, &energy), DVI_OK);
+    advance(march, 10);
+    ck_assert_int_eq(dvi_march_observe(march, 0, &later), DVI_OK);
+    ck_assert_double_eq_tol(energy, later, 1e-13); /* roundings */
+    const double error = lattice_distance(march, &w, quarter_wave, NULL);
+    if (cells > 40) ck_assert_double_eq_tol(log2(before / error), 2, 0.2);
+    before = error;
+    dvi_march_destroy(&march);
+  }
+}
+END_TEST
+/* ---- other densities ---- */
+
+static double right_going(double t, const double *x, const void *of)
+{
+  (void)of;
+  return .4 * exp(sin(x[0] - t));
+}
+
+START_TEST(densities_may_be_nonlinear_in_the_rates)
+{
+  static const double weight[][2] = {{0, 0}, {1. / 6, 1. / 6}, {.25, .25}};
+  double before = 0;
+  for (int cells = 41; cells <= 330; cells *= 2) {
+    lattice w = {.cells = cells + 1 - cells % 2, .step = .5 * 2 * pi / cells};
+    lattice_terms(&w);
+    w.terms.part = &lattice_strings;
+    w.terms.parts = 1;
+    w.terms.weights.space[0] = weight[_i][0];
+    w.terms.weights.time = weight[_i][1];
+    dvi_march *march = NULL;
+    dvi_law law[DVI_LAWS_MAX];
+    int count;
+    ck_assert_int_eq(dvi_multisymplectic_create(&w.terms, &march), DVI_OK);
+    lattice_start(march, &w, right_going, NULL);
+    advance(march, 2);
+    const double error = lattice_distance(march, &w, right_going, NULL);
+    if (cells > 100) ck_assert_double_eq_tol(log2(before / error), 2, 0.2);
+    before = error;
+    dvi_march_destroy(&march);
+    double u[400], E[400];
+    for (int i = 0; i < w.terms.cells[0]; i++)
+      u[i] = right_going(0, (double[]){2 * pi * i / w.terms.cells[0]}, NULL), E[i] = .2 * u[i];
+    const dvi_march_state start = {.size = sizeof start, .A = u, .E = E};
+    ck_assert_int_eq(dvi_multisymplectic_laws(&w.terms, &start, 6, 3, law, &count), DVI_OK);
+    ck_assert_double_lt(law[0].error, 1e-13);
+    ck_assert_double_lt(law[1].error, 1e-12);
+  }
+}
+END_TEST
+SUITE(lattice_ends)
+{
+  tcase_add_loop_test(tests, walls_may_move, 0, 4);
+  tcase_add_loop_test(tests, fluxes_may_move, 0, 3);
+  tcase_add_test(tests, springs_hold_the_boundary);
+  tcase_add_loop_test(tests, cells_may_be_unequal, 0, 2);
+  tcase_add_loop_test(tests, densities_may_be_nonlinear_in_the_rates, 0, 3);
+}
