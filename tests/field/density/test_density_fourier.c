@@ -58,6 +58,35 @@ START_TEST(mass_is_one_and_stiffness_diagonal)
 }
 END_TEST
 
+/* l = 2 u^2, which makes modes up to k = 2 unstable. */
+static int hill(int count, double t, const double *x, const double *z, double *l, double *l_z,
+                double *l_zz, void *user)
+{
+  (void)t, (void)x, (void)user;
+  for (int k = 0; k < count; k++) {
+    if (l != NULL) l[k] = 2 * z[k] * z[k];
+    if (l_z != NULL) l_z[k] = 4 * z[k];
+    if (l_zz != NULL) l_zz[k] = 4;
+  }
+  return 0;
+}
+
+START_TEST(fastest_frequency_is_that_of_the_stable_modes)
+{
+  dvi_density_part parts[] = {kinetic_part, klein_gordon_part, elastic_part};
+  double omega;
+  parts[1].density = hill;
+  density_field field = make_field("fourier:modes=6", 1, parts, 3);
+  ck_assert_int_eq(dvi_density_fastest(field.density, &omega), DVI_OK);
+  ck_assert(omega * omega > 32 - 1e-9 && omega * omega < 32 * 1.0022);
+  end_density(&field);
+  field = make_field("fourier:modes=6", 1, parts, 2);
+  ck_assert_int_eq(dvi_density_fastest(field.density, &omega), DVI_OK);
+  ck_assert_double_eq(omega, 0);
+  end_density(&field);
+}
+END_TEST
+
 /* l = -(2 + cos x) u_x^2/2: 2 is in the matrix, and cos x in a potential. */
 static int varied(int count, double t, const double *x, const double *z, double *l, double *l_z,
                   double *l_zz, void *user)
@@ -310,6 +339,9 @@ START_TEST(kdv_agrees_with_differences)
     dvi_density_explain(field.density, text, sizeof text);
     ck_assert_msg(strstr(text, "1 constant left out") != NULL, "%s", text);
     ck_assert_msg(strstr(text, "one-form: constant gradients") != NULL, "%s", text);
+    double eigenvalue[6];
+    ck_assert_int_eq(dvi_density_modes(field.density, NULL, NULL, eigenvalue, NULL),
+                     DVI_UNSUPPORTED);
     check_density(&field, 1e-6);
     end_density(&field);
   }
@@ -407,6 +439,7 @@ SUITE(density_fourier)
 {
   tcase_add_test(tests, callbacks_agree_with_differences);
   tcase_add_test(tests, mass_is_one_and_stiffness_diagonal);
+  tcase_add_test(tests, fastest_frequency_is_that_of_the_stable_modes);
   tcase_add_test(tests, coefficients_that_vary_have_a_potential_of_their_own);
   tcase_add_test(tests, masses_that_vary_are_refused);
   tcase_add_test(tests, momentum_is_exact_without_aliasing);

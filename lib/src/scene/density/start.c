@@ -54,19 +54,6 @@ static int start_at(int64_t count, const double *x, double *f, void *user)
   return dvi__local_value(user, count, 0, x, f);
 }
 
-/* Complain of a start that has no value somewhere, at the part of the expression that has none. */
-static bool complain(dvi_scene *scene, dvi_status status)
-{
-  dvi__span span;
-  const char *words;
-  if (status == DVI_CALLBACK_FAILED && dvi__fault_status() != DVI_OK) status = dvi__fault_status();
-  if (status == DVI_NO_MEMORY) return dvi__scene_no_memory(scene);
-  if (dvi__fault_place(&span, &words))
-    return dvi__complain(scene->complaint, DVI_NOT_FINITE, span, "at the start: %s", words);
-  return dvi__complain(scene->complaint, status, dvi__tree_find(scene->tree, "initial")->span,
-                       "at the start: %s", dvi_last_error());
-}
-
 static bool interpolate(dvi_scene *scene, dvi__local *const *start, double *U)
 {
   const struct dvi__scene_density *s = scene->density;
@@ -74,7 +61,8 @@ static bool interpolate(dvi_scene *scene, dvi__local *const *start, double *U)
     if (start[c] == NULL || start[c]->term == NULL) continue;
     const dvi_status status = dvi_space_interpolate(s->space, start_at, start[c],
                                                     U + c * s->functions);
-    if (status != DVI_OK) return complain(scene, status);
+    if (status != DVI_OK)
+      return dvi__density_complain(scene, dvi__tree_find(scene->tree, "initial"), status);
   }
   return true;
 }
