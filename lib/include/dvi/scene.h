@@ -8,6 +8,7 @@
 #include <dvi/density.h>
 #include <dvi/field.h>
 #include <dvi/march.h>
+#include <dvi/schroedinger.h>
 #include <dvi/sensitivity.h>
 #include <dvi/system.h>
 #include <stddef.h>
@@ -152,6 +153,14 @@ const char *dvi_scene_component(const dvi_scene *scene, int i);
 
 /** Give field i of a scene with a density, in the order of the file. Returns 0 if there is none. */
 int dvi_scene_declared_of(const dvi_scene *scene, int i, dvi_scene_declared *field);
+
+/** Give the equation of a scene with the section `schroedinger`, whose real and imaginary parts are
+ *  the components of its field. Owned by the scene.
+ *
+ *  @retval DVI_UNSUPPORTED  the scene has no such section, or conditions on its boundary that are
+ *                           neither fixed at 0 nor free without a flux
+ *  @retval (others)         as dvi_schroedinger_create */
+dvi_status dvi_scene_schroedinger(const dvi_scene *scene, const dvi_schroedinger **equation);
 
 /** Write what was found in a density and what was built of it, one fact a line: fields, parts by
  *  the summands of the expression, the space, the terms, and how well momenta can be kept. Cut off

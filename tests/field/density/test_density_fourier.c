@@ -330,6 +330,15 @@ START_TEST(solitons_have_the_errors_of_the_poisson_form)
 }
 END_TEST
 
+/* The slope of splines of degree 4 has order 4. Two-forms are regular for odd numbers of cells. */
+START_TEST(solitons_on_splines_have_the_order_of_a_slope)
+{
+  const double coarse = kdv_error("spline:degree=4,cells=101", "vprk:nodes=2", 100),
+               fine = kdv_error("spline:degree=4,cells=201", "vprk:nodes=2", 100);
+  ck_assert_double_ge(log2(coarse / fine), 3.8);
+}
+END_TEST
+
 START_TEST(kdv_agrees_with_differences)
 {
   static const char *const kinds[] = {"fourier:modes=6", "spline:degree=3,cells=11"};
@@ -445,6 +454,7 @@ SUITE(density_fourier)
   tcase_add_test(tests, momentum_is_exact_without_aliasing);
   tcase_add_test(tests, pendula_on_a_torus_have_a_known_state);
   tcase_add_test(tests, solitons_have_the_errors_of_the_poisson_form);
+  tcase_add_test(tests, solitons_on_splines_have_the_order_of_a_slope);
   tcase_add_test(tests, kdv_agrees_with_differences);
   tcase_add_test(tests, solitons_have_known_invariants);
   tcase_add_test(tests, momentum_of_solitons_is_exact_without_aliasing);
