@@ -59,8 +59,8 @@ START_TEST(loads_that_depend_on_time_have_rates)
 }
 END_TEST
 
-/* u'' = sin 3t (x - mean of x) in the mean: u_0'' = sin 3t for l = sin 3t u, whose solution from rest
- * is t/3 - sin(3t)/9. The mean of x on [0,2] is 1. */
+/* The mean of x on [0,2] is 1, so that the mean of u has u'' = sin 3 t, and from rest it is
+ * t/3 - sin(3 t)/9. */
 START_TEST(loads_that_depend_on_time_push)
 {
   const dvi_density_part parts[] = {kinetic_part, elastic_part, push_part};

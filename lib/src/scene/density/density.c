@@ -116,18 +116,25 @@ static dvi_status make_field(dvi_scene *scene)
   return status;
 }
 
-/* Complain with the library's last sentence, about the boundary if it is about a part of that. */
+bool dvi__density_complain(dvi_scene *scene, const dvi__tree *section, dvi_status status)
+{
+  dvi__span span;
+  const char *words;
+  if (status == DVI_CALLBACK_FAILED && dvi__fault_status() != DVI_OK) status = dvi__fault_status();
+  if (status == DVI_NO_MEMORY) return dvi__scene_no_memory(scene);
+  if (dvi__fault_place(&span, &words))
+    return dvi__complain(scene->complaint, DVI_NOT_FINITE, span, "at the start: %s", words);
+  return dvi__complain(scene->complaint, status, section->span, "%s", dvi_last_error());
+}
+
+/* Complain of the field, about the boundary if the sentence is about a part of that. */
 static bool complain(dvi_scene *scene, dvi_status status)
 {
   const dvi__tree *boundary = dvi__tree_find(scene->tree, "boundary");
-  if (status == DVI_CALLBACK_FAILED && dvi__fault_status() != DVI_OK) status = dvi__fault_status();
-  if (status == DVI_NO_MEMORY) return dvi__scene_no_memory(scene);
   const char *sentence = dvi_last_error();
   const bool is_of_boundary = boundary != NULL && (strstr(sentence, "boundary") != NULL ||
                                                    strstr(sentence, "condition") != NULL);
-  return dvi__complain(scene->complaint, status,
-                       (is_of_boundary ? boundary : scene->density->section)->span, "%s%s%s",
-                       sentence, dvi_scene_fault()[0] != '\0' ? "; " : "", dvi_scene_fault());
+  return dvi__density_complain(scene, is_of_boundary ? boundary : scene->density->section, status);
 }
 
 /* ---- the unknowns ---- */

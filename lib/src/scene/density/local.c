@@ -215,6 +215,7 @@ static int evaluate(const dvi__local *local, int count, double t, const double *
     failed = dvi__function_second(f, count, in, second);
   for (int k = 0; k < local->pairs && to.l_zz != NULL && !is_direct; k++)
     memcpy(to.l_zz + k * count, seconds + local->entry[k] * count, (size_t)count * sizeof *seconds);
+  for (int k = 0; k < count && failed != 0; k++) time[k] = t; /* for the message */
   return dvi__fault_check(local->term, count, in, 0, failed);
 }
 

@@ -112,6 +112,10 @@ bool dvi__density_sort(dvi__context *c, dvi__node root);
 /* Make the space, for a density of the degree that is known. */
 bool dvi__density_make_space(dvi_scene *scene);
 
+/* Complain with the library's last sentence about a section, or of the part of an expression that
+ * has no value. Returns false. */
+bool dvi__density_complain(dvi_scene *scene, const dvi__tree *section, dvi_status status);
+
 /* Refuse variable k of a function, which is of too high an order along an axis. */
 bool dvi__refuse_order(dvi_scene *scene, const dvi__local *local, int k, int axis);
 

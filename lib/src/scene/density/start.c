@@ -54,19 +54,6 @@ static int start_at(int64_t count, const double *x, double *f, void *user)
   return dvi__local_value(user, count, 0, x, f);
 }
 
-/* Complain of a start that has no value somewhere, at the part of the expression that has none. */
-static bool complain(dvi_scene *scene, dvi_status status)
-{
-  dvi__span span;
-  const char *words;
-  if (status == DVI_CALLBACK_FAILED && dvi__fault_status() != DVI_OK) status = dvi__fault_status();
-  if (status == DVI_NO_MEMORY) return dvi__scene_no_memory(scene);
-  if (dvi__fault_place(&span, &words))
-    return dvi__complain(scene->complaint, DVI_NOT_FINITE, span, "at the start: %s", words);
-  return dvi__complain(scene->complaint, status, dvi__tree_find(scene->tree, "initial")->span,
-                       "at the start: %s", dvi_last_error());
-}
-
 dvi_status dvi__density_interpolate(const struct dvi__scene_density *s, dvi__local *const *of,
                                     double *U)
 {
@@ -83,5 +70,6 @@ bool dvi__density_start(dvi_scene *scene, double *U, double *rate)
   dvi__fault_clear();
   dvi_status status = dvi__density_interpolate(s, s->start, U);
   if (status == DVI_OK) status = dvi__density_interpolate(s, s->start_rate, rate);
-  return status == DVI_OK || complain(scene, status);
+  return status == DVI_OK ||
+         dvi__density_complain(scene, dvi__tree_find(scene->tree, "initial"), status);
 }
