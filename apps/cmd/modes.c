@@ -109,6 +109,20 @@ static dvi_status find_state(const problem *scene, double *U)
   return status == DVI_OK ? dvi_density_solve(density_of(scene), U, NULL) : status;
 }
 
+/* Find the lowest stationary states of Schroedinger's equation, which are real. */
+static dvi_status find_states(const modes_request *r, const dvi_schroedinger *equation,
+                              double *energy, double *mode)
+{
+  const size_t functions = (size_t)dvi_space_functions(dvi_schroedinger_space(equation));
+  double *psi = calloc((size_t)r->count * functions, sizeof *psi);
+  if (psi == NULL) return DVI_NO_MEMORY;
+  const dvi_status status = dvi_schroedinger_modes(equation, (int)r->count, energy, psi);
+  for (size_t i = 0; i < (size_t)r->count && status == DVI_OK; i++)
+    memcpy(mode + 2 * i * functions, psi + i * functions, functions * sizeof *psi);
+  free(psi);
+  return status;
+}
+
 static int find_spectrum(const modes_request *r, const problem *scene, const dvi_density *density)
 {
   const size_t all = (size_t)density_coefficients(density), count = (size_t)r->count;
@@ -120,8 +134,13 @@ static int find_spectrum(const modes_request *r, const problem *scene, const dvi
     return FAILED;
   }
   double *const U = eigenvalue + count, *const mode = U + all;
+  const dvi_schroedinger *equation = NULL;
+  (void)dvi_scene_schroedinger(scene->scene, &equation);
   dvi_status status = r->at_static_state ? find_state(scene, U) : DVI_OK;
-  if (status == DVI_OK) status = dvi_density_modes(density, &options, U, eigenvalue, mode);
+  if (status == DVI_OK)
+    status = equation != NULL && isnan(r->near) && !r->at_static_state
+                 ? find_states(r, equation, eigenvalue, mode)
+                 : dvi_density_modes(density, &options, U, eigenvalue, mode);
   int code = status == DVI_OK ? print_spectrum(r, scene, eigenvalue) : library_error(status);
   if (status == DVI_BAD_SIZE) code = USAGE; /* more modes than the field has */
   if (code == DONE && r->shapes != NULL)
@@ -143,8 +162,8 @@ static const char *const details[] = {
     "spectrum in the columns of a run.\n",
     "The modes of fields with a density (section 'density') are those of small motions about 0, or "
     "with --static about the static state near the scene's start. All parts of the density count. "
-    "With one-forms, as of Schroedinger's equation, the eigenvalues are the lambda of H x = lambda "
-    "N x with the Hessians of the energy and of the norm.\n",
+    "Those of the section 'schroedinger' are the lowest energies of the equation without "
+    "interaction, and its states.\n",
     "Columns of --csv: index, eigenvalue, omega, ascending. Columns of --shapes: the position of "
     "the quadrature points, and the value of each component of each mode.\n",
     "Examples:\n"

@@ -96,6 +96,17 @@ expect 0 'modes on a mesh' modes drum.yaml --count 1 --csv - --vtu modes.vtu
 about out eigenvalue 5.8 1e-2
 expect 2 'a state of waves' modes pulse.yaml --near
 
+# the oscillator's energies n + 1/2
+cat >well.yaml <<END
+domain: {x: [-8, 8]}
+space: fem:degree=3,cells=40
+schroedinger: {potential: x^2/2}
+boundary: fixed
+END
+expect 0 'energies' modes well.yaml --count 3 --csv - --shapes states.csv
+about out eigenvalue 2.5 1e-5
+says states.csv '^x,psi_re_mode_1,psi_im_mode_1,psi_re_mode_2' 'the states'
+
 cat >plane.yaml <<END
 domain: {x: [0, 2*pi]}
 space: fourier:modes=4

@@ -289,6 +289,22 @@ START_TEST(the_short_form_is_a_density)
 }
 END_TEST
 
+/* The lowest energies of the oscillator are hbar sqrt(k/m) (n + 1/2), here with sqrt(k/m) = 1/2. */
+START_TEST(the_short_form_is_an_equation)
+{
+  const dvi_schroedinger *equation;
+  double energy[2];
+  (void)open_scene("domain: {x: [-12, 12]}\nspace: fem:degree=4,cells=40\nboundary: fixed\n"
+                   "schroedinger: {potential: x^2/2, hbar: 0.5, mass: 4}\n");
+  ck_assert_int_eq(dvi_scene_schroedinger(scene, &equation), DVI_OK);
+  ck_assert_int_eq(dvi_schroedinger_modes(equation, 2, energy, NULL), DVI_OK);
+  requires_near(energy[0], 0.125, 1e-6);
+  requires_near(energy[1], 0.375, 1e-5);
+  (void)open_scene(CIRCLE SCALAR SINE_GORDON "space: fem:degree=1,cells=4\n");
+  ck_assert_int_eq(dvi_scene_schroedinger(scene, &equation), DVI_UNSUPPORTED);
+}
+END_TEST
+
 /* ---- what is watched ---- */
 
 START_TEST(probes_are_values_derivatives_and_integrals)
@@ -443,6 +459,7 @@ SUITE(density_scenes)
   tcase_add_test(tests, ends_that_move_carry_a_wave);
   tcase_add_test(tests, the_short_form_moves_plane_waves);
   tcase_add_test(tests, the_short_form_is_a_density);
+  tcase_add_test(tests, the_short_form_is_an_equation);
   tcase_add_test(tests, probes_are_values_derivatives_and_integrals);
   tcase_add_test(tests, unknowns_have_the_names_of_their_fields);
   tcase_add_test(tests, a_step_is_a_fraction_of_the_largest_stable_one);

@@ -8,6 +8,7 @@
 #include <dvi/density.h>
 #include <dvi/field.h>
 #include <dvi/march.h>
+#include <dvi/schroedinger.h>
 #include <dvi/sensitivity.h>
 #include <dvi/system.h>
 #include <stddef.h>
@@ -141,6 +142,14 @@ const dvi_density *dvi_scene_density(const dvi_scene *scene);
 /** Return the name of component i of the fields with a density ("u", "psi_re", "w_1"), owned by the
  *  scene. NULL if there is none. */
 const char *dvi_scene_component(const dvi_scene *scene, int i);
+
+/** Give the equation of a scene with the section `schroedinger`, whose real and imaginary parts are
+ *  the components of its field. Owned by the scene.
+ *
+ *  @retval DVI_UNSUPPORTED  the scene has no such section, or conditions on its boundary that are
+ *                           neither fixed at 0 nor free without a flux
+ *  @retval (others)         as dvi_schroedinger_create */
+dvi_status dvi_scene_schroedinger(const dvi_scene *scene, const dvi_schroedinger **equation);
 
 /** Write what was found in a density and what was built of it, one fact a line: fields, parts by
  *  the summands of the expression, the space, the terms, and how well momenta can be kept. Cut off

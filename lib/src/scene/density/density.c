@@ -1,5 +1,6 @@
 /* The section density, which is read when all others about it are: the space, the field and its
  * terms are made, and the scene's coordinates become the unknowns. */
+#include <dvi/schroedinger.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -281,6 +282,7 @@ bool dvi__read_schroedinger(dvi_scene *scene, const dvi__tree *section)
 void dvi__scene_density_clear(dvi_scene *scene)
 {
   if (scene->density == NULL) return;
+  dvi_schroedinger_destroy(&scene->density->equation);
   dvi_density_destroy(&scene->density->density);
   dvi_space_destroy(&scene->density->space);
   dvi_mesh_destroy(&scene->density->mesh);

@@ -78,10 +78,13 @@ struct dvi__scene_density {
   const dvi__tree *section;               /* density or schroedinger */
   dvi__local *part[DVI__DENSITY_CLASSES]; /* NULL for classes without summands */
   int summands[DVI__DENSITY_CLASSES];
-  int degree;                    /* of the density in the fields, or -1 if no polynomial */
-  bool is_uniform;               /* the density does not depend on position */
-  bool is_static;                /* it has no rates */
-  char chosen[DVI_AXES_MAX][96]; /* kinds of the axes, with the points chosen here */
+  int degree;                          /* of the density in the fields, or -1 if no polynomial */
+  bool is_uniform;                     /* the density does not depend on position */
+  bool is_static;                      /* it has no rates */
+  char chosen[DVI_AXES_MAX][96];       /* kinds of the axes, with the points chosen here */
+  double hbar, mass;                   /* of the section schroedinger */
+  dvi__local *potential, *interaction; /* likewise, NULL without it */
+  struct dvi_schroedinger *equation;   /* NULL until it is asked for */
   dvi_space *space;
   dvi_density *density;
   int64_t functions;

@@ -29,6 +29,16 @@ static bool check_inputs(dvi__context *c, dvi__span span, dvi__node node)
   return true;
 }
 
+/* Keep V or beta as a function of its own. */
+static bool keep_function(dvi__context *c, dvi__node node, dvi__local **local)
+{
+  dvi__kernels list = {0};
+  if (!dvi__kernels_add_node(c, node, &list) || !dvi__local_make(c->scene, &list, local))
+    return false;
+  if ((*local)->term != NULL) (*local)->term->role = DVI__ROLE_AUXILIARY;
+  return true;
+}
+
 /* Read an expression of position and time, a number if it is left out. */
 static bool read_function(dvi__context *c, const dvi__tree *section, const char *name, double usual,
                           dvi__node *node)
@@ -87,20 +97,21 @@ bool dvi__schroedinger_node(dvi__context *c, const dvi__tree *section, dvi__node
 {
   static const char *const known[] = {"potential", "interaction", "hbar", "mass"};
   dvi__graph *g = c->graph;
-  double hbar, mass;
+  struct dvi__scene_density *s = c->scene->density;
   dvi__node V, beta;
   if (!dvi__want_mapping(c->scene, section, "schroedinger") ||
       !dvi__want_keys(c->scene, section, "schroedinger", 4, known) ||
-      !read_positive(c->scene, section, "hbar", &hbar) ||
-      !read_positive(c->scene, section, "mass", &mass) ||
+      !read_positive(c->scene, section, "hbar", &s->hbar) ||
+      !read_positive(c->scene, section, "mass", &s->mass) ||
       !read_function(c, section, "potential", 0, &V) ||
-      !read_function(c, section, "interaction", 0, &beta))
+      !read_function(c, section, "interaction", 0, &beta) || !keep_function(c, V, &s->potential) ||
+      !keep_function(c, beta, &s->interaction))
     return false;
   const dvi__node norm = squares(c, -1, 0),
-                  kinetic = dvi__scale(g, hbar * hbar / (2 * mass),
+                  kinetic = dvi__scale(g, s->hbar * s->hbar / (2 * s->mass),
                                        squares(c, 0, c->scene->jets->dimension)),
                   interaction = dvi__multiply(g, dvi__scale(g, 0.5, beta), dvi__square(g, norm));
-  *node = dvi__subtract(g, one_form(c, hbar), kinetic);
+  *node = dvi__subtract(g, one_form(c, s->hbar), kinetic);
   *node = dvi__subtract(g, *node, dvi__multiply(g, V, norm));
   *node = dvi__subtract(g, *node, interaction);
   return true;
