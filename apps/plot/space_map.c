@@ -104,7 +104,7 @@ static void write_script(FILE *script, const void *drawing)
 
 bool space_map_draw(const space_map *map, const char *path, const char *title, const char *axis)
 {
-  if (map->rows >= 2 && map->time[map->rows - 1] > map->time[0])
+  if (map->rows >= 2 && map->time[map->rows - 1] != map->time[0])
     return gnuplot_draw(path, write_script, &(map_drawing){map, title, axis});
   complain("no map in '%s': it needs rows at two times at least", path);
   return false;

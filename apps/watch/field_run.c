@@ -11,6 +11,7 @@
 #include "cli/signals.h"
 #include "load/open_march.h"
 #include "watch/field_columns.h"
+#include "watch/field_map.h"
 #include "watch/field_trace.h"
 #include "watch/frames.h"
 #include "watch/run_end.h"
@@ -27,6 +28,8 @@ typedef struct journey {
   field_trace trace;
   frame_list frames;
   double *vector; /* [cells*3] room of the frames */
+  field_map map;
+  double *u; /* [vertices] values of a wave for the map */
   whole_file out;
   progress_line progress;
   double unit, t_start;
@@ -138,9 +141,21 @@ static bool write_row(journey *j)
   return run_file_is_good(&j->out) && write_frame(j);
 }
 
+/* Put the values of a wave into the map. */
+static bool add_to_map(journey *j)
+{
+  double *row = field_map_row(&j->map, dvi_march_time(j->march));
+  if (row == NULL) return true;
+  const dvi_status status = dvi_march_sample(j->march, DVI_FORM_A, 0, NULL, j->u);
+  if (status != DVI_OK) return library_error(status) == DONE;
+  field_map_put(&j->map, j->u, row);
+  return true;
+}
+
 static bool look(journey *j, bool row)
 {
   j->row_written = false;
+  if (!add_to_map(j)) return false;
   if (!row && j->trace.t == NULL) return true;
   if (!field_columns_measure(&j->columns)) return false;
   field_trace_add(&j->trace);
@@ -155,7 +170,7 @@ static long next_stop(const journey *j)
   const run_request *r = j->request;
   const long every = r->every, saved = r->checkpoint_every;
   long next = j->unit_count + STEPS_AT_ONCE;
-  if (!r->final || j->trace.t != NULL)
+  if (!r->final || j->trace.t != NULL || j->u != NULL)
     next = next < (j->unit_count / every + 1) * every ? next : (j->unit_count / every + 1) * every;
   if (saved > 0 && next > (j->unit_count / saved + 1) * saved)
     next = (j->unit_count / saved + 1) * saved;
@@ -226,6 +241,17 @@ static int start_frames(journey *j)
   return FAILED;
 }
 
+static int start_map(journey *j)
+{
+  const run_request *r = j->request;
+  const int code = field_map_start(&j->map, j->scene, r->map, r->map_of);
+  if (code != DONE || r->map == NULL) return code;
+  j->u = calloc((size_t)dvi_march_size(j->march, DVI_FORM_A), sizeof *j->u);
+  if (j->u != NULL) return DONE;
+  complain("out of memory");
+  return FAILED;
+}
+
 static int write_files(journey *j)
 {
   const run_request *r = j->request;
@@ -236,6 +262,7 @@ static int write_files(journey *j)
   if (run_keeps_files(code) && !frames_keep(&j->frames)) code = FAILED;
   if (run_keeps_files(code) && r->plot != NULL && !field_trace_plot(&j->trace, r->plot))
     code = FAILED;
+  if (run_keeps_files(code) && !field_map_draw(&j->map)) code = FAILED;
   file_discard(&j->out);
   return code;
 }
@@ -249,12 +276,15 @@ int field_run(run_request *request, const problem *scene)
   if (code == DONE) code = make_march(&j);
   if (code == DONE) code = field_columns_choose(&j.columns, scene, j.march, request->columns);
   if (code == DONE && request->pvd != NULL) code = start_frames(&j);
+  if (code == DONE) code = start_map(&j);
   j.caught = signals_note(run_ended_again);
   if (code == DONE) code = write_files(&j);
   field_trace_clear(&j.trace);
   field_columns_clear(&j.columns);
   frames_clear(&j.frames);
+  field_map_clear(&j.map);
   free(j.vector);
+  free(j.u);
   dvi_march_destroy(&j.march);
   return code;
 }

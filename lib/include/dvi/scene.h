@@ -86,6 +86,14 @@ typedef struct dvi_scene_facts {
   int quadratic_potentials; /**< number of potentials with constant Hessians */
 } dvi_scene_facts;
 
+/** A field with a density, as the scene declares it: its components are `first` to first +
+ *  components - 1. A complex field has two of them, its real and its imaginary part. */
+typedef struct dvi_scene_declared {
+  const char *name;
+  int first, components;
+  int is_complex; /**< not 0 if it is */
+} dvi_scene_declared;
+
 /** A number high + low, with more digits than a double has. high is the double nearest to it. */
 typedef struct dvi_pair {
   double high, low;
@@ -151,6 +159,9 @@ const char *dvi_scene_component(const dvi_scene *scene, int i);
  *  @retval (others)         as dvi_schroedinger_create */
 dvi_status dvi_scene_schroedinger(const dvi_scene *scene, const dvi_schroedinger **equation);
 
+/** Give field i of a scene with a density, in the order of the file. Returns 0 if there is none. */
+int dvi_scene_declared_of(const dvi_scene *scene, int i, dvi_scene_declared *field);
+
 /** Write what was found in a density and what was built of it, one fact a line: fields, parts by
  *  the summands of the expression, the space, the terms, and how well momenta can be kept. Cut off
  *  at size. Nothing for other scenes. */
@@ -187,8 +198,9 @@ dvi_status dvi_scene_march_create(const dvi_scene *scene, const dvi_march_option
 dvi_status dvi_scene_vectors(const dvi_scene *scene, const dvi_march *march, dvi_march_form form,
                              double *vector);
 
-/** Return the mesh of a scene of fields, owned by the scene. That of a grid for yee, which does
- *  without, is made by the first call. NULL without a mesh, or without memory. */
+/** Return the mesh of a scene of fields, owned by the scene. That of a grid for yee, and that of a
+ *  domain (dvi_space_mesh), which do without, are made by the first call. NULL without a mesh, or
+ *  without memory. */
 const dvi_mesh *dvi_scene_mesh(dvi_scene *scene);
 
 /** Tell why a scene of a field has a grid for yee, and neither mesh nor system: what only a grid

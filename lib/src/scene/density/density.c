@@ -286,4 +286,5 @@ void dvi__scene_density_clear(dvi_scene *scene)
   dvi_density_destroy(&scene->density->density);
   dvi_space_destroy(&scene->density->space);
   dvi_mesh_destroy(&scene->density->mesh);
+  dvi_mesh_destroy(&scene->density->shown);
 }

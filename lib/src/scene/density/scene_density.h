@@ -65,6 +65,7 @@ struct dvi__scene_density {
   dvi__span axis_span[DVI_AXES_MAX];
   const dvi__tree *place; /* the section domain or mesh */
   dvi_mesh *mesh;         /* or NULL */
+  dvi_mesh *shown;        /* of a domain, for values. NULL before it is asked for */
   const char *kind;       /* of the space, or NULL */
   dvi__declared_field *field;
   int fields;
