@@ -153,6 +153,21 @@ START_TEST(callbacks_agree_with_differences_with_several_fields)
 }
 END_TEST
 
+/* Parts without second derivatives are loads, and kinks but for their points. */
+START_TEST(parts_may_be_linear)
+{
+  static const char *const linear[] = {"density: u'^2/2 + cos(t)*x*u\n",
+                                       "density: u'^2/2 - d(u,x)^2/2 - abs(u)\n",
+                                       "density: u'^2/2 + u'^4 + sin(x)*u\n"};
+  for (int i = 0; i < KINDS; i++)
+    for (int k = 0; k < 3; k++) {
+      char text[TEXT_SIZE];
+      (void)snprintf(text, sizeof text, "space: %s\n%s%s%s", kinds[i], CIRCLE, SCALAR, linear[k]);
+      check_system(text);
+    }
+}
+END_TEST
+
 /* The kernels of a scene and callbacks written by hand differ by the order of roundings alone. */
 START_TEST(a_scene_is_the_field_that_a_program_declares)
 {
@@ -451,6 +466,7 @@ SUITE(density_scenes)
   tcase_add_test(tests, callbacks_agree_with_differences_in_the_plane);
   tcase_add_test(tests, callbacks_agree_with_differences_on_meshes);
   tcase_add_test(tests, callbacks_agree_with_differences_with_several_fields);
+  tcase_add_test(tests, parts_may_be_linear);
   tcase_add_test(tests, a_scene_is_the_field_that_a_program_declares);
   tcase_add_test(tests, sine_gordon_waves_are_the_known_ones);
   tcase_add_test(tests, points_enough_keep_the_momentum_of_a_polynomial);
