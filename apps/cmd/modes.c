@@ -165,7 +165,7 @@ static const char *const details[] = {
     "Those of the section 'schroedinger' are the lowest energies of the equation without "
     "interaction, and its states.\n",
     "Columns of --csv: index, eigenvalue, omega, ascending. Columns of --shapes: the position of "
-    "the quadrature points, and the value of each component of each mode.\n",
+    "the vertices, and the value of each component of each mode.\n",
     "Examples:\n"
     "  dvi modes drum.yaml --count 6\n"
     "  dvi modes drum.yaml --count 3 --near 100 --csv - --vtu modes.vtu\n"

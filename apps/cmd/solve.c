@@ -199,8 +199,8 @@ static const char *const details[] = {
     "with losses tends to.\n",
     "The static state of fields with a density (section 'density') is that where the derivatives "
     "of all parts without rates vanish, found by Newton's method from the scene's start.\n",
-    "Columns of --csv: vertex, its coordinates, u. Of a density: the position of the quadrature "
-    "points, and the value of each component.\n",
+    "Columns of --csv: vertex, its coordinates, u. Of a density: the position of the vertices, and "
+    "the value of each component and of |psi|^2 of a complex field.\n",
     "Examples:\n"
     "  dvi solve membrane.yaml\n"
     "  dvi solve membrane.yaml --csv values.csv --vtu values.vtu\n",
