@@ -234,8 +234,8 @@ static const char *const details[] = {
     "of all parts without rates vanish, found by Newton's method from the scene's start. With "
     "'solve: ground' it is the ground state of the section schroedinger, of norm 1 or that of "
     "'solve: {ground: NORM}': mu is its chemical potential.\n",
-    "Columns of --csv: vertex, its coordinates, u. Of a density: the position of the quadrature "
-    "points, and the value of each component.\n",
+    "Columns of --csv: vertex, its coordinates, u. Of a density: the position of the vertices, and "
+    "the value of each component and of |psi|^2 of a complex field.\n",
     "Examples:\n"
     "  dvi solve membrane.yaml\n"
     "  dvi solve membrane.yaml --csv values.csv --vtu values.vtu\n",
