@@ -1,9 +1,11 @@
 /* Products with a matrix whose rows repeat, as those of equal cells do. One row serves for all of
  * them, so that neither their values nor their columns come from memory. */
+#include <string.h>
+
 #include "field/density/density.h"
 #include "num/simd/wide.h"
 
-enum { PERIOD_MOST = 32, BLOCK = 64 /* rows */ };
+enum { PERIOD_MOST = 32, BLOCK = 512 /* rows */ };
 
 static int is_repeated(const dvi__csr *A, int64_t i, int period)
 {
@@ -53,23 +55,21 @@ static stencil stencil_of(const dvi__csr *A, int64_t row)
   return (stencil){row, A->start[row + 1] - start, A->value + start, A->column + start};
 }
 
-/* Multiply rows first to last-1, which are all the same one. */
-WIDE static void multiply_equal(const stencil *s, int64_t first, int64_t last,
-                                const double *restrict q, double *restrict y)
+WIDE static void add_column(int64_t count, double value, const double *restrict q,
+                            double *restrict y)
 {
-  int64_t i = first;
-  for (; i + BLOCK <= last; i += BLOCK, y += BLOCK) {
-    double sum[BLOCK] = {0};
-    for (int64_t e = 0; e < s->count; e++) {
-      const double *from = q + i + (s->column[e] - s->row), value = s->value[e];
-      for (int k = 0; k < BLOCK; k++) sum[k] += value * from[k];
-    }
-    for (int k = 0; k < BLOCK; k++) y[k] = sum[k];
-  }
-  for (; i < last; i++, y++) {
-    double sum = 0;
-    for (int64_t e = 0; e < s->count; e++) sum += s->value[e] * q[i + s->column[e] - s->row];
-    *y = sum;
+  for (int64_t k = 0; k < count; k++) y[k] += value * q[k];
+}
+
+/* Multiply rows first to last-1, which are all the same one. */
+static void multiply_equal(const stencil *s, int64_t first, int64_t last, const double *q,
+                           double *y)
+{
+  for (int64_t i = first; i < last; i += BLOCK, y += BLOCK) {
+    const int64_t count = last - i < BLOCK ? last - i : BLOCK;
+    memset(y, 0, (size_t)count * sizeof *y);
+    for (int64_t e = 0; e < s->count; e++)
+      add_column(count, s->value[e], q + i + (s->column[e] - s->row), y);
   }
 }
 

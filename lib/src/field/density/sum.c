@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "field/density/density.h"
+#include "num/simd/wide.h"
 
 enum { ROOM = 8192 /* numbers of a block */ };
 
@@ -50,13 +51,17 @@ static void lay_out(block *b, const dvi__density_sums *s)
   if (s->qq == NULL && s->qv == NULL && s->vv == NULL) b->l_zz = NULL;
 }
 
-static void fill_points(block *b)
+/* The places of an interval are the part's. */
+static void fill_places(const block *b)
 {
-  const int64_t points = b->part->points;
   const int dimension = b->integral->density->dimension;
   for (int d = 0; d < dimension && dimension > 1; d++)
-    memcpy(b->room + d * b->count, b->part->x + d * points + b->first,
+    memcpy(b->room + d * b->count, b->part->x + d * b->part->points + b->first,
            (size_t)b->count * sizeof(double));
+}
+
+static void fill_weights(block *b)
+{
   for (int k = 0; k < b->count; k++)
     b->weight[k] = b->integral->sign * b->part->weight[b->first + k];
 }
@@ -184,23 +189,29 @@ static const double *own_coordinates(const block *b, const dvi__density_sums *s)
   return b->first < own->first || from == NULL || is_more ? NULL : from + (b->first - own->shift);
 }
 
+WIDE static void add_scaled(int count, double weight, const double *restrict l_z,
+                            double *restrict derivative)
+{
+  for (int k = 0; k < count; k++) derivative[k] += weight * l_z[k];
+}
+
 /* Give what the general functions would give, to the last bit. */
 static int sum_own_points(block *b, const double *z, const dvi__density_sums *s)
 {
   const dvi_density_part *given = &b->part->given;
   const dvi__own_points *own = &b->part->own_points;
   double *derivative = given->variable[0].rate ? s->v : s->q;
+  fill_places(b);
+  if (own->weight == 0 || s->value != NULL) fill_weights(b);
   const int failed = given->density(b->count, b->at->t, b->x, z, b->l, b->l_z, NULL, given->user);
   if (failed != 0) return failed;
   if (s->value != NULL) add_value(b, s->value);
   if (derivative == NULL) return 0;
   derivative += b->first - own->shift - b->at->first;
-  if (own->weight != 0) {
-    const double weight = b->integral->sign * own->weight;
-    for (int k = 0; k < b->count; k++) derivative[k] += weight * b->l_z[k];
-  } else {
+  if (own->weight != 0)
+    add_scaled(b->count, b->integral->sign * own->weight, b->l_z, derivative);
+  else
     for (int k = 0; k < b->count; k++) derivative[k] += b->weight[k] * b->l_z[k];
-  }
   return 0;
 }
 
@@ -211,8 +222,9 @@ static int sum_block(block *b, const dvi__density_sums *s)
   const dvi_density_part *given = &b->part->given;
   const double *own = own_coordinates(b, s);
   lay_out(b, s);
-  fill_points(b);
   if (own != NULL) return sum_own_points(b, own, s);
+  fill_places(b);
+  fill_weights(b);
   for (int a = 0; a < given->variables; a++) gather_variable(b, a);
   const int failed = given->density(b->count, b->at->t, b->x, b->z, b->l, b->l_z, b->l_zz,
                                     given->user);
