@@ -225,7 +225,8 @@ static dvi_status split_rows(const dvi_density *density, dvi__density_part *part
   return DVI_OK;
 }
 
-/* Find the last points that are coordinates, while rows still have the coordinates' numbers. */
+/* Find the last points that are coordinates, while rows still have the coordinates' numbers. Where
+ * most of them have one weight, those before that have another one are left out. */
 static void find_own_points(dvi__density_part *part)
 {
   const dvi__jet_rows *rows = part->rows;
@@ -238,8 +239,12 @@ static void find_own_points(dvi__density_part *part)
     if (rows->start[k + 1] - e != 1 || rows->value[e] != 1) return;
     if (rows->fixed != NULL && rows->fixed[k] != 0) return;
     if (k < part->points - 1 && rows->local[e] != k - own->shift) return;
+    if (k == part->points - 1) own->weight = part->weight[k];
+    if (own->weight != 0 && part->weight[k] != own->weight) {
+      if (k < part->points / 2) return;
+      own->weight = 0;
+    }
     own->shift = k - rows->local[e];
-    own->weight = k == part->points - 1 || part->weight[k] == own->weight ? part->weight[k] : 0;
     own->first = k;
   }
 }

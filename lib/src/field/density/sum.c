@@ -20,8 +20,8 @@ typedef struct block {
   const double *G, *G_rate, *G_second; /* values that move, and their derivatives in time */
   int64_t first;
   int count;
-  double weight[DVI__BLOCK_MOST]; /* with the integral's sign */
-  double *room;                   /* [ROOM] */
+  double *weight; /* [DVI__BLOCK_MOST] with the integral's sign */
+  double *room;   /* [ROOM] */
   const double *x;
   double *z, *l, *l_z, *l_zz;
 } block;
@@ -60,7 +60,7 @@ static void fill_places(const block *b)
            (size_t)b->count * sizeof(double));
 }
 
-static void fill_weights(block *b)
+static void fill_weights(const block *b)
 {
   for (int k = 0; k < b->count; k++)
     b->weight[k] = b->integral->sign * b->part->weight[b->first + k];
@@ -241,8 +241,8 @@ static int sum_block(block *b, const dvi__density_sums *s)
 int dvi__part_sum(const dvi__integral *integral, const dvi__density_part *part,
                   const dvi__density_point *at, const double *room, const dvi__density_sums *sums)
 {
-  double stack[ROOM];
-  block b = {.integral = integral, .part = part, .at = at, .room = stack};
+  double stack[ROOM], weight[DVI__BLOCK_MOST];
+  block b = {.integral = integral, .part = part, .at = at, .weight = weight, .room = stack};
   if (room != NULL) {
     b.G = room;
     b.G_second = room + 2 * integral->density->moving;
