@@ -52,7 +52,8 @@ says err 'it needs rows at two times' 'the reason'
 # Of the probe: w and its odd multiples. The mesh and the step move them by some 2e-4 of themselves.
 expect 0 'rows for a spectrum' run breather.yaml --every 2 --out rows.csv
 expect 0 'a spectrum' spectrum rows.csv --columns middle --band 0.3:2.6 --csv lines.csv
-awk -F, 'NR > 1 && $5 > 0.05 { n = 2 * count++ + 1; d = $2 / (0.5 * n) - 1; if (d*d > 1e-7) bad = 1 }
+awk -F, 'NR > 1 && $5 > 0.05 {
+    n = 2 * count++ + 1; d = $2 / (0.5 * n) - 1; if (d*d > 1e-7) bad = 1 }
   END { exit bad || count != 3 }' lines.csv || { fail 'w, 3 w and 5 w'; cat lines.csv; }
 
 # ---- frames and files of a line ----
