@@ -146,7 +146,8 @@ function is_seen(target,   whole) {
 
 function check_public(quoted, header) {
   if (quoted || (header !~ /^dvi\// && !(header in standard)))
-    breach("a public header includes only <dvi/...>, <math.h>, <stdarg.h>, <stddef.h>, <stdint.h>, <string.h>")
+    breach("a public header includes only <dvi/...>, <math.h>, <stdarg.h>, <stddef.h>, " \
+           "<stdint.h>, <string.h>")
 }
 
 # The command, the problems and the examples are users of the library.

@@ -193,7 +193,7 @@ static int sum_block(block *b, const dvi__density_sums *s)
 int dvi__part_sum(const dvi__integral *integral, const dvi__density_part *part,
                   const dvi__density_point *at, const double *room, const dvi__density_sums *sums)
 {
-  double stack[ROOM];
+  double stack[ROOM]; /* written before it is read, block by block */
   block b = {.integral = integral, .part = part, .at = at, .room = stack};
   if (room != NULL) {
     b.G = room;
