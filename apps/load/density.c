@@ -20,6 +20,16 @@ bool has_field(const problem *scene)
   return density_of(scene) != NULL || dvi_scene_field(scene->scene) != NULL;
 }
 
+int64_t field_unknowns(const problem *scene)
+{
+  int64_t unknowns = 0;
+  if (density_of(scene) != NULL)
+    (void)dvi_density_unknowns(density_of(scene), &unknowns);
+  else
+    (void)dvi_field_unknowns(dvi_scene_field(scene->scene), &unknowns);
+  return unknowns;
+}
+
 void density_tell(const problem *scene)
 {
   char text[TEXT_SIZE];

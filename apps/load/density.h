@@ -12,6 +12,9 @@ const dvi_density *density_of(const problem *scene);
 /** Return whether a problem is a field, with a density or on a mesh alone. */
 bool has_field(const problem *scene);
 
+/** Return the number of unknowns of a field. */
+int64_t field_unknowns(const problem *scene);
+
 /** Print what was found, built and chosen, and which steps are stable. */
 void density_tell(const problem *scene);
 

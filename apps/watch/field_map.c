@@ -21,6 +21,15 @@ static int refuse(const problem *scene, const char *reason)
                      scene->name, reason);
 }
 
+static bool take_state(field_map *m)
+{
+  const size_t n = (size_t)field_unknowns(m->scene);
+  m->q = calloc(3 * n, sizeof *m->q);
+  m->p = m->q + n;
+  m->v = m->p + n;
+  return m->q != NULL;
+}
+
 /* ---- fields with a density ---- */
 
 static int start_density(field_map *m, const dvi_density *density, const char *name)
@@ -33,14 +42,12 @@ static int start_density(field_map *m, const dvi_density *density, const char *n
   const dvi_mesh *mesh = dvi_scene_mesh(m->scene->scene);
   if (mesh == NULL) return library_error(DVI_NO_MEMORY);
   const double *point = dvi_mesh_points(mesh);
-  const size_t coefficients = (size_t)density_coefficients(density),
-               nv = (size_t)dvi_system_nv(m->scene->system);
+  const size_t coefficients = (size_t)density_coefficients(density);
   m->axis = dvi_space_axis(space, 0);
-  m->U = calloc(coefficients, sizeof *m->U);
-  m->rate = calloc(coefficients, sizeof *m->rate);
-  m->v = calloc(nv + 1, sizeof *m->v);
+  m->U = calloc(2 * coefficients, sizeof *m->U);
   m->x = calloc(SPACE_MAP_WIDTH, sizeof *m->x);
-  if (m->U == NULL || m->rate == NULL || m->v == NULL || m->x == NULL) return out_of_memory();
+  if (m->U == NULL || m->x == NULL || !take_state(m)) return out_of_memory();
+  m->rate = m->U + coefficients;
   if (!space_map_start(&m->map, point[0], point[dvi_mesh_count(mesh, 0) - 1])) return FAILED;
   for (int i = 0; i < m->map.width; i++) {
     const double part = (double)i / (m->map.width - 1);
@@ -88,7 +95,8 @@ static int start_wave(field_map *m, const dvi_field *field, const char *name)
   (void)strcpy(m->shown.name, "u");
   m->vertices = dvi_mesh_count(mesh, 0);
   m->U = calloc((size_t)m->vertices, sizeof *m->U);
-  if (m->U == NULL || !sort_vertices(m, dvi_mesh_points(mesh))) return out_of_memory();
+  if (m->U == NULL || !take_state(m) || !sort_vertices(m, dvi_mesh_points(mesh)))
+    return out_of_memory();
   return space_map_start(&m->map, m->place[0], m->place[m->vertices - 1]) ? DONE : FAILED;
 }
 
@@ -110,37 +118,20 @@ void field_map_clear(field_map *m)
 {
   space_map_clear(&m->map);
   free(m->x);
+  free(m->q);
   free(m->U);
-  free(m->rate);
-  free(m->v);
   free(m->order);
   free(m->place);
 }
 
-double *field_map_row(field_map *m, double t)
-{
-  return m->path != NULL ? space_map_row(&m->map, t) : NULL;
-}
-
-/* Interpolate between neighbours. */
-void field_map_put(field_map *m, const double *u, double *row)
-{
-  const space_map *map = &m->map;
-  for (int64_t i = 0; i < m->vertices; i++) m->ascend[i] = u[m->order[i]];
-  for (int64_t i = 0, right = 1; i < map->width; i++) {
-    const double x = map->from + (map->to - map->from) * (double)i / (map->width - 1);
-    while (right + 1 < m->vertices && m->place[right] < x) right++;
-    const double *place = m->place + right - 1, *value = m->ascend + right - 1;
-    row[i] = value[0] + (value[1] - value[0]) * (x - place[0]) / (place[1] - place[0]);
-  }
-}
+/* ---- rows ---- */
 
 static bool put_density(field_map *m, double t, const double *q, const double *p, double *row)
 {
   const dvi_density *density = density_of(m->scene);
   dvi_status status = dvi_density_lift(density, t, q, m->U);
   if (status == DVI_OK && m->shown.kind == QUANTITY_RATE) {
-    status = dvi_system_velocity(m->scene->system, t, q, p, m->v);
+    status = dvi_system_velocity(dvi_scene_system(m->scene->scene), t, q, p, m->v);
     if (status == DVI_OK) status = dvi_density_lift_rate(density, t, m->v, m->rate);
   }
   if (status != DVI_OK) return library_error(status) == DONE;
@@ -148,15 +139,42 @@ static bool put_density(field_map *m, double t, const double *q, const double *p
                            m->map.width, m->x, row) == DONE;
 }
 
-bool field_map_add_state(field_map *m, double t, const double *q, const double *p)
+/* Interpolate between neighbours. */
+static bool put_wave(field_map *m, const double *q, double *row)
 {
-  double *row = field_map_row(m, t);
-  if (row == NULL) return true;
-  if (m->vertices == 0) return put_density(m, t, q, p, row);
+  const space_map *map = &m->map;
   const dvi_status status = dvi_field_lift(dvi_scene_field(m->scene->scene), q, m->U);
   if (status != DVI_OK) return library_error(status) == DONE;
-  field_map_put(m, m->U, row);
+  for (int64_t i = 0; i < m->vertices; i++) m->ascend[i] = m->U[m->order[i]];
+  for (int64_t i = 0, right = 1; i < map->width; i++) {
+    const double x = map->from + (map->to - map->from) * (double)i / (map->width - 1);
+    while (right + 1 < m->vertices && m->place[right] < x) right++;
+    const double *place = m->place + right - 1, *value = m->ascend + right - 1;
+    row[i] = value[0] + (value[1] - value[0]) * (x - place[0]) / (place[1] - place[0]);
+  }
   return true;
+}
+
+static bool put(field_map *m, double t, const double *q, const double *p, double *row)
+{
+  return m->vertices == 0 ? put_density(m, t, q, p, row) : put_wave(m, q, row);
+}
+
+bool field_map_add_state(field_map *m, double t, const double *q, const double *p)
+{
+  double *row = m->path != NULL ? space_map_row(&m->map, t) : NULL;
+  return row == NULL || put(m, t, q, p, row);
+}
+
+bool field_map_add_march(field_map *m, const dvi_march *march)
+{
+  const double t = dvi_march_time(march);
+  double *row = m->path != NULL ? space_map_row(&m->map, t) : NULL;
+  if (row == NULL) return true;
+  const bool needs_p = m->vertices == 0 && m->shown.kind == QUANTITY_RATE;
+  const dvi_status status = dvi_scene_march_state(m->scene->scene, march, m->q,
+                                                  needs_p ? m->p : NULL);
+  return status == DVI_OK ? put(m, t, m->q, m->p, row) : library_error(status) == DONE;
 }
 
 bool field_map_draw(const field_map *m)

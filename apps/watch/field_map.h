@@ -1,6 +1,8 @@
 /** The map of a field on a line over space and time, drawn from a run. */
 #ifndef FIELD_MAP_H
 #define FIELD_MAP_H
+#include <dvi/march.h>
+
 #include "load/quantity.h"
 #include "plot/space_map.h"
 
@@ -11,10 +13,11 @@ typedef struct field_map {
   const char *axis;
   quantity shown; /**< of a density. Without one it is u, the field's values at vertices */
   space_map map;
-  double *x;              /**< [width] */
-  double *U, *rate, *v;   /**< coefficients, rates of a density's fields, and velocities */
-  int64_t vertices;       /**< of the mesh of a field without a density */
-  int *order;             /**< [vertices] along the axis */
+  double *x;         /**< [width] */
+  double *q, *p, *v; /**< a state, and its velocities */
+  double *U, *rate;  /**< coefficients and rates of a density's fields, or values at vertices */
+  int64_t vertices;  /**< of the mesh of a field without a density, else 0 */
+  int *order;        /**< [vertices] along the axis */
   double *place, *ascend; /**< [vertices] places along the axis, and values */
 } field_map;
 
@@ -27,11 +30,8 @@ void field_map_clear(field_map *map);
 /** Offer the state of a mechanical method. Complains and returns false if it cannot be shown. */
 bool field_map_add_state(field_map *map, double t, const double *q, const double *p);
 
-/** Return the place for values at a time, or NULL if it is left out, or without a map. */
-double *field_map_row(field_map *map, double t);
-
-/** Put a field without a density, its values at the vertices, into such a row. */
-void field_map_put(field_map *map, const double *u, double *row);
+/** Offer the state of a march. */
+bool field_map_add_march(field_map *map, const dvi_march *march);
 
 /** Draw the map, if there is one, and say what it shows. Complains and returns false if it cannot
  * be written. */

@@ -36,6 +36,7 @@ typedef struct dvi_scene_plan {
   long every;
   int column_count;
   const char *const *column; /**< names for tables */
+  int usual_columns;         /**< not 0 if these are of a field that does not choose any */
 } dvi_scene_plan;
 
 /** An event of a scene: the sign of an expression changes. */
@@ -151,6 +152,10 @@ const dvi_density *dvi_scene_density(const dvi_scene *scene);
  *  scene. NULL if there is none. */
 const char *dvi_scene_component(const dvi_scene *scene, int i);
 
+
+/** Give field i of a scene with a density, in the order of the file. Returns 0 if there is none. */
+int dvi_scene_declared_of(const dvi_scene *scene, int i, dvi_scene_declared *field);
+
 /** Give the equation of a scene with the section `schroedinger`, whose real and imaginary parts are
  *  the components of its field. Owned by the scene.
  *
@@ -162,6 +167,7 @@ dvi_status dvi_scene_schroedinger(const dvi_scene *scene, const dvi_schroedinger
 /** Give field i of a scene with a density, in the order of the file. Returns 0 if there is none. */
 int dvi_scene_declared_of(const dvi_scene *scene, int i, dvi_scene_declared *field);
 
+
 /** Write what was found in a density and what was built of it, one fact a line: fields, parts by
  *  the summands of the expression, the space, the terms, and how well momenta can be kept. Cut off
  *  at size. Nothing for other scenes. */
@@ -170,7 +176,8 @@ void dvi_scene_density_explain(const dvi_scene *scene, char *text, size_t size);
 /** Give the options of dvi_field_solve that the scene sets. Returns 0 if it has no field. */
 int dvi_scene_solve_options(const dvi_scene *scene, dvi_field_solve_options *options);
 
-/** Tell if a method is one of marches (dvi/march.h), for a scene of a field.
+/** Tell if a method is one of marches, for a scene of a field: those of dvi/march.h and yee, and
+ *  for a density multisymplectic (dvi/multisymplectic.h).
  *
  *  @param method  its specification. NULL for the scene's own
  *  @return 1 if it is, 0 if it is not, or for a scene without a field */
@@ -185,10 +192,41 @@ int dvi_scene_marches(const dvi_scene *scene, const char *method);
  *  @param[out] march    owned by the caller, for dvi_march_destroy before the scene's end
  *  @retval DVI_BAD_OPTION    the method is not one of marches
  *  @retval DVI_UNSUPPORTED   the scene has no mesh, and the method is not yee; it has a damping; or
- *                            the method is yee, and the star is not circumcentric
+ *                            the method is yee, and the star is not circumcentric; or
+ *                            dvi_scene_march_refused tells why
  *  @retval (others)          as dvi_march_create, dvi_yee_create and dvi_march_start */
 dvi_status dvi_scene_march_create(const dvi_scene *scene, const dvi_march_options *options,
                                   dvi_march **march);
+
+/** Tell why a scene with a density cannot have a march. NULL if it may, as far as the scene's kinds
+ *  of domain and space go, or if the method is none of marches.
+ *
+ *  @param[out] section  the scene's section that is to blame. Unchanged without a reason */
+const char *dvi_scene_march_refused(const dvi_scene *scene, const char *method,
+                                    const char **section);
+
+/** Return the order in time of a march to the motion of the scene's system. 0 if it has another
+ *  limit: the steps of multisymplectic have their own mass in space, which is that of fem with the
+ *  weight exact, and lumped with the weight trapezoid. 0, too, if the method is none of marches. */
+int dvi_scene_march_order(const dvi_scene *scene, const char *method);
+
+/** Measure the laws of a march of the scene's field (dvi_field_laws, dvi_multisymplectic_laws) that
+ *  begins at random.
+ *
+ *  @param      options  with a method
+ *  @param[out] law      [DVI_LAWS_MAX]
+ *  @retval DVI_UNSUPPORTED  the scene has no such march
+ *  @retval (others)         as those functions */
+dvi_status dvi_scene_march_laws(const dvi_scene *scene, const dvi_march_options *options, int steps,
+                                dvi_law *law, int *count);
+
+/** Give the state of the scene's system at the time of a march: coordinates q [nq] and, unless it
+ *  is NULL, momenta p [nv].
+ *
+ *  @retval DVI_UNSUPPORTED  the march has no A, or the scene no system
+ *  @retval (others)         as dvi_march_sample and the system */
+dvi_status dvi_scene_march_state(const dvi_scene *scene, const dvi_march *march, double *q,
+                                 double *p);
 
 /** Give E or B of a march of the scene's field as vectors of space in the cells of its mesh.
  *

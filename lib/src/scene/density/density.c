@@ -78,7 +78,7 @@ static bool check_motion(dvi_scene *scene)
 
 /* ---- the field ---- */
 
-static int list_parts(const struct dvi__scene_density *s, dvi_density_part *part)
+int dvi__density_parts(const struct dvi__scene_density *s, dvi_density_part *part)
 {
   int parts = 0;
   for (int class = 0; class < DVI__DENSITY_CLASSES; class ++) {
@@ -105,7 +105,7 @@ static dvi_status make_field(dvi_scene *scene)
                                    .space = s->space,
                                    .components = s->jets.components,
                                    .part = part,
-                                   .parts = list_parts(s, part),
+                                   .parts = dvi__density_parts(s, part),
                                    .condition = s->condition,
                                    .conditions = s->conditions,
                                    .translations = s->is_uniform && !s->has_placed_data};
@@ -262,7 +262,7 @@ static bool make(dvi_scene *scene)
   set_form(scene);
   const bool good = declare_unknowns(scene) && make_start(scene) &&
                     dvi__density_make_probes(scene) && dvi__choose_field_columns(scene) &&
-                    choose_step(scene);
+                    dvi__lattice_find_symmetries(scene) && choose_step(scene);
   scene->jets = NULL; /* from here on the coordinates are the unknowns */
   return good;
 }

@@ -6,6 +6,7 @@
 #ifndef DVI_SCENE_DENSITY_SCENE_DENSITY_H
 #define DVI_SCENE_DENSITY_SCENE_DENSITY_H
 #include <dvi/density.h>
+#include <dvi/multisymplectic.h>
 
 #include "scene/elaborate/kernels.h"
 
@@ -89,6 +90,8 @@ struct dvi__scene_density {
   dvi_space *space;
   dvi_density *density;
   int64_t functions;
+  dvi_multisymplectic_symmetry *symmetry; /* [symmetries] of a march on a lattice */
+  int symmetries;
 };
 
 /* Return the number of components of all fields. */
@@ -123,7 +126,32 @@ bool dvi__refuse_order(dvi_scene *scene, const dvi__local *local, int k, int axi
 /* Give the coefficients [components*functions] of the start and of its rate. */
 bool dvi__density_start(dvi_scene *scene, double *U, double *rate);
 
+/* Interpolate functions of[components], which may be NULL, into U [components*functions]. */
+dvi_status dvi__density_interpolate(const struct dvi__scene_density *s, dvi__local *const *of,
+                                    double *U);
+
+/* List the parts of the density, at most DVI__DENSITY_CLASSES. Returns how many they are. */
+int dvi__density_parts(const struct dvi__scene_density *s, dvi_density_part *part);
+
 /* Declare the probes as what is watched. */
 bool dvi__density_make_probes(dvi_scene *scene);
+
+/* ---- marches ---- */
+
+/* Tell why there is no lattice, with the section to blame. NULL if there is one. */
+const char *dvi__lattice_refused(const dvi_scene *scene, const char **section);
+
+/* Tell if short steps of the method tend to the motion of the scene's system, which has the mass of
+ * the space. */
+bool dvi__lattice_is_semidiscrete(const dvi_scene *scene, const char *method);
+
+/* Find shifts and turns of the fields that leave the density as it is. */
+bool dvi__lattice_find_symmetries(dvi_scene *scene);
+
+/* Create and start a march on the lattice, and measure its laws. */
+dvi_status dvi__lattice_march(const dvi_scene *scene, const dvi_march_options *options,
+                              dvi_march **march);
+dvi_status dvi__lattice_laws(const dvi_scene *scene, const dvi_march_options *options, int steps,
+                             dvi_law *law, int *count);
 
 #endif
