@@ -152,7 +152,6 @@ const dvi_density *dvi_scene_density(const dvi_scene *scene);
  *  scene. NULL if there is none. */
 const char *dvi_scene_component(const dvi_scene *scene, int i);
 
-
 /** Give field i of a scene with a density, in the order of the file. Returns 0 if there is none. */
 int dvi_scene_declared_of(const dvi_scene *scene, int i, dvi_scene_declared *field);
 
@@ -163,10 +162,6 @@ int dvi_scene_declared_of(const dvi_scene *scene, int i, dvi_scene_declared *fie
  *                           neither fixed at 0 nor free without a flux
  *  @retval (others)         as dvi_schroedinger_create */
 dvi_status dvi_scene_schroedinger(const dvi_scene *scene, const dvi_schroedinger **equation);
-
-/** Give field i of a scene with a density, in the order of the file. Returns 0 if there is none. */
-int dvi_scene_declared_of(const dvi_scene *scene, int i, dvi_scene_declared *field);
-
 
 /** Write what was found in a density and what was built of it, one fact a line: fields, parts by
  *  the summands of the expression, the space, the terms, and how well momenta can be kept. Cut off
