@@ -153,6 +153,21 @@ START_TEST(callbacks_agree_with_differences_with_several_fields)
 }
 END_TEST
 
+/* Parts without second derivatives are loads, and kinks but for their points. */
+START_TEST(parts_may_be_linear)
+{
+  static const char *const linear[] = {"density: u'^2/2 + cos(t)*x*u\n",
+                                       "density: u'^2/2 - d(u,x)^2/2 - abs(u)\n",
+                                       "density: u'^2/2 + u'^4 + sin(x)*u\n"};
+  for (int i = 0; i < KINDS; i++)
+    for (int k = 0; k < 3; k++) {
+      char text[TEXT_SIZE];
+      (void)snprintf(text, sizeof text, "space: %s\n%s%s%s", kinds[i], CIRCLE, SCALAR, linear[k]);
+      check_system(text);
+    }
+}
+END_TEST
+
 /* The kernels of a scene and callbacks written by hand differ by the order of roundings alone. */
 START_TEST(a_scene_is_the_field_that_a_program_declares)
 {
@@ -292,16 +307,14 @@ END_TEST
 /* The lowest energies of the oscillator are hbar sqrt(k/m) (n + 1/2), here with sqrt(k/m) = 1/2. */
 START_TEST(the_short_form_is_an_equation)
 {
-  const dvi_schroedinger *equation;
   double energy[2];
   (void)open_scene("domain: {x: [-12, 12]}\nspace: fem:degree=4,cells=40\nboundary: fixed\n"
                    "schroedinger: {potential: x^2/2, hbar: 0.5, mass: 4}\n");
-  ck_assert_int_eq(dvi_scene_schroedinger(scene, &equation), DVI_OK);
-  ck_assert_int_eq(dvi_schroedinger_modes(equation, 2, energy, NULL), DVI_OK);
+  ck_assert_int_eq(dvi_schroedinger_modes(dvi_scene_schroedinger(scene), 2, energy, NULL), DVI_OK);
   requires_near(energy[0], 0.125, 1e-6);
   requires_near(energy[1], 0.375, 1e-5);
   (void)open_scene(CIRCLE SCALAR SINE_GORDON "space: fem:degree=1,cells=4\n");
-  ck_assert_int_eq(dvi_scene_schroedinger(scene, &equation), DVI_UNSUPPORTED);
+  ck_assert_ptr_null(dvi_scene_schroedinger(scene));
 }
 END_TEST
 
@@ -453,6 +466,7 @@ SUITE(density_scenes)
   tcase_add_test(tests, callbacks_agree_with_differences_in_the_plane);
   tcase_add_test(tests, callbacks_agree_with_differences_on_meshes);
   tcase_add_test(tests, callbacks_agree_with_differences_with_several_fields);
+  tcase_add_test(tests, parts_may_be_linear);
   tcase_add_test(tests, a_scene_is_the_field_that_a_program_declares);
   tcase_add_test(tests, sine_gordon_waves_are_the_known_ones);
   tcase_add_test(tests, points_enough_keep_the_momentum_of_a_polynomial);

@@ -44,8 +44,8 @@ typedef struct dvi_density_part {
   dvi_density_kind kind;
   const dvi_jet *variable; /**< [variables] all different. Copied */
   int variables;
-  /** [pairs] the variables a >= b by which there are second derivatives. Default: all of them,
-   *  row by row of the lower triangle. Copied */
+  /** [pairs] the variables a >= b by which there are second derivatives. Default (NULL): all of
+   *  them, row by row of the lower triangle. Not NULL with 0 pairs: there are none. Copied */
   const int (*pair)[2];
   int pairs;
   /** l [count], its derivatives l_z [variables*count] and second ones l_zz [pairs*count], variable
