@@ -84,15 +84,16 @@ struct dvi__scene_density {
   int conditions, condition_room;
   bool has_placed_data;             /* a value or a flux depends on position */
   dvi__local **start, **start_rate; /* [components] or NULL for 0 */
+  dvi__local **final;               /* [components] or NULL without an end */
   struct dvi__density_probe *probe; /* [probes] */
   int probes;
   const dvi__tree *section;               /* density or schroedinger */
   dvi__local *part[DVI__DENSITY_CLASSES]; /* NULL for classes without summands */
   int summands[DVI__DENSITY_CLASSES];
-  int degree;                          /* of the density in the fields, or -1 if no polynomial */
-  bool is_uniform;                     /* the density does not depend on position */
-  bool is_static;                      /* it has no rates */
-  char chosen[DVI_AXES_MAX][96];       /* kinds of the axes, with the points chosen here */
+  int degree;                    /* of the density in the fields, or -1 if no polynomial */
+  bool is_uniform;               /* the density does not depend on position */
+  bool is_static;                /* it has no rates */
+  char chosen[DVI_AXES_MAX][96]; /* kinds of the axes, with the points chosen here */
   dvi_space *space;
   dvi_density *density;
   int64_t functions;
@@ -101,6 +102,10 @@ struct dvi__scene_density {
   struct dvi__equation *equation; /* NULL without the section schroedinger */
   double ground;                  /* norm of the ground state that is asked for, or 0 */
 };
+
+/* Read the section final, if there is one, and make the end of it. */
+bool dvi__density_read_final(dvi_scene *scene);
+bool dvi__density_make_final(dvi_scene *scene);
 
 /* Return the number of components of all fields. */
 static inline int dvi__components(const dvi_scene *scene)
