@@ -117,6 +117,19 @@ static double norm_of(const dvi__line *line, int64_t i)
   return sqrt((i == 0 ? 1 : 2) / (line->to - line->from));
 }
 
+/* Add the coefficients of one side to those of the other without a derivative, where all but the
+ * first have one factor. */
+static void scale(const dvi__line *line, const double *from, int64_t from_stride, double *to,
+                  int64_t to_stride)
+{
+  const double norm = norm_of(line, 1);
+  to[0] += norm_of(line, 0) * from[0];
+  if (from_stride == 1 && to_stride == 1)
+    for (int64_t i = 1; i < line->functions; i++) to[i] += norm * from[i];
+  else
+    for (int64_t i = 1; i < line->functions; i++) to[i * to_stride] += norm * from[i * from_stride];
+}
+
 /* Neighbouring lines of an array, whose numbers along the axis are `stride` apart. Up to 8 at a
  * time fill lines of the cache. */
 enum { LINES = 8 };
@@ -132,7 +145,9 @@ static void synthesise(const dvi__line *line, int order, const double *U, bundle
 {
   const int64_t points = line->cell_points;
   memset(values, 0, (size_t)(b.lines * points) * sizeof *values);
-  for (int64_t i = 0; i < line->functions; i++) {
+  for (int q = 0; q < b.lines && order == 0; q++)
+    scale(line, U + q, b.stride, values + q * points, 1);
+  for (int64_t i = 0; i < line->functions && order > 0; i++) {
     const dvi__fourier_image image = differentiate(line, order, i);
     const double factor = image.factor * norm_of(line, i);
     for (int q = 0; q < b.lines; q++)
@@ -149,7 +164,9 @@ static void add_analysis(const dvi__line *line, int order, const double *values,
   for (int64_t j = 0; j < points; j++)
     for (int q = 0; q < b.lines; q++) copy[q * points + j] = values[j * b.stride + q];
   for (int q = 0; q < b.lines; q++) dvi__fft_analyse(line->own, copy + q * points, work);
-  for (int64_t i = 0; i < line->functions; i++) {
+  for (int q = 0; q < b.lines && order == 0; q++)
+    scale(line, copy + q * points, 1, U + q, b.stride);
+  for (int64_t i = 0; i < line->functions && order > 0; i++) {
     const dvi__fourier_image image = differentiate(line, order, i);
     const double factor = image.factor * norm_of(line, i);
     for (int q = 0; q < b.lines; q++)
