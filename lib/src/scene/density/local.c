@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "scene/density/scene_density.h"
+#include "scene/elaborate/elaborate.h"
 #include "scene/sections/sections.h"
 #include "scene/terms/fault.h"
 
@@ -156,8 +157,9 @@ static bool read_component(dvi__context *c, dvi__node node, unsigned may, dvi__l
                            "%s is a function of position, without the fields", c->where);
 }
 
-bool dvi__local_read(dvi_scene *scene, const dvi__tree *tree, unsigned may, const char *where,
-                     int count, dvi__local **local)
+/* Read a function, or its derivative along an axis from 0 on. */
+static bool read_function(dvi_scene *scene, const dvi__tree *tree, unsigned may, const char *where,
+                          int axis, int count, dvi__local **local)
 {
   char shape[48], needed[48];
   const dvi__expression *e;
@@ -165,7 +167,8 @@ bool dvi__local_read(dvi_scene *scene, const dvi__tree *tree, unsigned may, cons
   if (!dvi__tree_expression(scene, tree, &e) ||
       !dvi__context_make(&c, scene, DVI__MENTIONS_Q | may, where))
     return false;
-  const dvi__value value = dvi__elaborate(&c, e);
+  dvi__value value = dvi__elaborate(&c, e);
+  if (!dvi__failed(value) && axis >= 0) value = dvi__derivative_along(&c, value, axis, e->span);
   bool good = value.shape.rank >= 0;
   const bool fits = count == 1 ? value.shape.rank == 0
                                : value.shape.rank == 1 && value.shape.rows == count;
@@ -178,6 +181,18 @@ bool dvi__local_read(dvi_scene *scene, const dvi__tree *tree, unsigned may, cons
     good = read_component(&c, value.node == NULL ? value.one : value.node[k], may, local + k);
   dvi__context_free(&c);
   return good;
+}
+
+bool dvi__local_read(dvi_scene *scene, const dvi__tree *tree, unsigned may, const char *where,
+                     int count, dvi__local **local)
+{
+  return read_function(scene, tree, may, where, -1, count, local);
+}
+
+bool dvi__local_read_slope(dvi_scene *scene, const dvi__tree *tree, int axis, const char *where,
+                           int count, dvi__local **local)
+{
+  return read_function(scene, tree, 0, where, axis, count, local);
 }
 
 /* ---- evaluation ---- */
