@@ -188,7 +188,7 @@ static const char *const details[] = {
     "schroedinger "
     "they are the energies of stationary states without interaction, each once.\n",
     "Columns of --csv: index, eigenvalue, omega, ascending. Columns of --shapes: the position of "
-    "the quadrature points, and the value of each component of each mode.\n",
+    "the vertices, and the value of each component of each mode.\n",
     "Examples:\n"
     "  dvi modes drum.yaml --count 6\n"
     "  dvi modes drum.yaml --count 3 --near 100 --csv - --vtu modes.vtu\n"

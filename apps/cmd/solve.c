@@ -308,8 +308,8 @@ static const char *const details[] = {
     "'solve: {ground: NORM}': mu is its chemical potential. On a mesh that "
     "moves ('moving') nodes and values are found together, energy and barrier are those of the "
     "action, and --csv has the nodes.\n",
-    "Columns of --csv: vertex, its coordinates, u. Of a density: the position of the quadrature "
-    "points, and the value of each component.\n",
+    "Columns of --csv: vertex, its coordinates, u. Of a density: the position of the vertices, and "
+    "the value of each component and of |psi|^2 of a complex field.\n",
     "Examples:\n"
     "  dvi solve membrane.yaml\n"
     "  dvi solve membrane.yaml --csv values.csv --vtu values.vtu\n",

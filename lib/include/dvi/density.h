@@ -44,8 +44,8 @@ typedef struct dvi_density_part {
   dvi_density_kind kind;
   const dvi_jet *variable; /**< [variables] all different. Copied */
   int variables;
-  /** [pairs] the variables a >= b by which there are second derivatives. Default: all of them,
-   *  row by row of the lower triangle. Copied */
+  /** [pairs] the variables a >= b by which there are second derivatives. Default (NULL): all of
+   *  them, row by row of the lower triangle. Not NULL with 0 pairs: there are none. Copied */
   const int (*pair)[2];
   int pairs;
   /** l [count], its derivatives l_z [variables*count] and second ones l_zz [pairs*count], variable
@@ -184,8 +184,8 @@ dvi_status dvi_density_lift_rate(const dvi_density *density, double t, const dou
                                  double *rate);
 
 /** Give coordinates q, velocities v, and momenta p of coefficients U and their rates
- *  [components*functions] at time 0. What is fixed or moves is as the conditions say. U and rate may be NULL for 0, and q, v and p NULL if they are
- *  not wanted.
+ *  [components*functions] at time 0. What is fixed or moves is as the conditions say. U and rate
+ *  may be NULL for 0, and q, v and p NULL if they are not wanted.
  *
  *  @retval (others)  as the callbacks fail */
 dvi_status dvi_density_project(const dvi_density *density, const double *U, const double *rate,

@@ -88,6 +88,14 @@ typedef struct dvi_scene_facts {
   int quadratic_potentials; /**< number of potentials with constant Hessians */
 } dvi_scene_facts;
 
+/** A field with a density, as the scene declares it: its components are `first` to first +
+ *  components - 1. A complex field has two of them, its real and its imaginary part. */
+typedef struct dvi_scene_declared {
+  const char *name;
+  int first, components;
+  int is_complex; /**< not 0 if it is */
+} dvi_scene_declared;
+
 /** A number high + low, with more digits than a double has. high is the double nearest to it. */
 typedef struct dvi_pair {
   double high, low;
@@ -149,6 +157,9 @@ const dvi_moving *dvi_scene_moving(const dvi_scene *scene);
 /** Return the name of component i of the fields with a density ("u", "psi_re", "w_1"), owned by the
  *  scene. NULL if there is none. */
 const char *dvi_scene_component(const dvi_scene *scene, int i);
+
+/** Give field i of a scene with a density, in the order of the file. Returns 0 if there is none. */
+int dvi_scene_declared_of(const dvi_scene *scene, int i, dvi_scene_declared *field);
 
 /** Return Schroedinger's equation of a scene with the section schroedinger, owned by the scene. The
  *  first call makes it. NULL for other scenes, for those whose boundary has values, fluxes or
@@ -228,8 +239,9 @@ dvi_status dvi_scene_march_state(const dvi_scene *scene, const dvi_march *march,
 dvi_status dvi_scene_vectors(const dvi_scene *scene, const dvi_march *march, dvi_march_form form,
                              double *vector);
 
-/** Return the mesh of a scene of fields, owned by the scene. That of a grid for yee, which does
- *  without, is made by the first call. NULL without a mesh, or without memory. */
+/** Return the mesh of a scene of fields, owned by the scene. That of a grid for yee, and that of a
+ *  domain (dvi_space_mesh), which do without, are made by the first call. NULL without a mesh, or
+ *  without memory. */
 const dvi_mesh *dvi_scene_mesh(dvi_scene *scene);
 
 /** Tell why a scene of a field has a grid for yee, and neither mesh nor system: what only a grid

@@ -1,5 +1,6 @@
 /* The section density, which is read when all others about it are: the space, the field and its
  * terms are made, and the scene's coordinates become the unknowns. */
+#include <dvi/schroedinger.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -301,4 +302,5 @@ void dvi__scene_density_clear(dvi_scene *scene)
   dvi_density_destroy(&scene->density->density);
   dvi_space_destroy(&scene->density->space);
   dvi_mesh_destroy(&scene->density->mesh);
+  dvi_mesh_destroy(&scene->density->shown);
 }

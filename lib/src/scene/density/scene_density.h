@@ -82,6 +82,7 @@ struct dvi__scene_density {
   dvi__span axis_span[DVI_AXES_MAX];
   const dvi__tree *place; /* the section domain or mesh */
   dvi_mesh *mesh;         /* or NULL */
+  dvi_mesh *shown;        /* of a domain, for values. NULL before it is asked for */
   const char *kind;       /* of the space, or NULL */
   dvi__declared_field *field;
   int fields;
@@ -95,10 +96,10 @@ struct dvi__scene_density {
   const dvi__tree *section;               /* density or schroedinger */
   dvi__local *part[DVI__DENSITY_CLASSES]; /* NULL for classes without summands */
   int summands[DVI__DENSITY_CLASSES];
-  int degree;                    /* of the density in the fields, or -1 if no polynomial */
-  bool is_uniform;               /* the density does not depend on position */
-  bool is_static;                /* it has no rates */
-  char chosen[DVI_AXES_MAX][96]; /* kinds of the axes, with the points chosen here */
+  int degree;                          /* of the density in the fields, or -1 if no polynomial */
+  bool is_uniform;                     /* the density does not depend on position */
+  bool is_static;                      /* it has no rates */
+  char chosen[DVI_AXES_MAX][96];       /* kinds of the axes, with the points chosen here */
   dvi_space *space;
   dvi_density *density;
   int64_t functions;

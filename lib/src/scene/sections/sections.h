@@ -78,7 +78,7 @@ bool dvi__density_read_boundary(dvi_scene *scene, const dvi__tree *section);
 bool dvi__density_read_start(dvi_scene *scene, const dvi__tree *section);
 bool dvi__density_read_solve(dvi_scene *scene, const dvi__tree *section);
 bool dvi__density_read_probes(dvi_scene *scene, const dvi__tree *section);
-const dvi_mesh *dvi__density_mesh(const dvi_scene *scene);
+const dvi_mesh *dvi__density_mesh(dvi_scene *scene);
 void dvi__scene_density_clear(dvi_scene *scene);
 
 /* Do for a density what functions of dvi/scene.h do for a field. */
