@@ -8,6 +8,7 @@
 #include <dvi/density.h>
 #include <dvi/field.h>
 #include <dvi/march.h>
+#include <dvi/moving.h>
 #include <dvi/schroedinger.h>
 #include <dvi/sensitivity.h>
 #include <dvi/system.h>
@@ -145,8 +146,13 @@ const dvi_system_terms *dvi_scene_terms(const dvi_scene *scene);
 const dvi_field *dvi_scene_field(const dvi_scene *scene);
 
 /** Return the field of a scene with a density, owned by the scene. Its coordinates are named u_1,
- *  u_2 and so on by its fields. NULL if the scene has no density. */
+ *  u_2 and so on by its fields. NULL if the scene has no density, or one on a mesh that moves. */
 const dvi_density *dvi_scene_density(const dvi_scene *scene);
+
+/** Return the field of a scene with a density on a mesh that moves (section moving), owned by the
+ *  scene. Its coordinates are named by the axis, x_1 and so on, and by its fields. NULL for other
+ *  scenes. */
+const dvi_moving *dvi_scene_moving(const dvi_scene *scene);
 
 /** Return the name of component i of the fields with a density ("u", "psi_re", "w_1"), owned by the
  *  scene. NULL if there is none. */
