@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "scene/density/scene_density.h"
+#include "scene/elaborate/elaborate.h"
 #include "scene/sections/sections.h"
 #include "scene/terms/fault.h"
 
@@ -167,20 +168,34 @@ static bool check_shape(const dvi__context *c, const dvi__tree *tree, dvi__shape
       dvi__shape_text((dvi__shape){count > 1, count, 1}, needed, sizeof needed));
 }
 
-bool dvi__local_read(dvi_scene *scene, const dvi__tree *tree, unsigned may, const char *where,
-                     int count, dvi__local **local)
+/* Read a function, or its derivative along an axis from 0 on. */
+static bool read_function(dvi_scene *scene, const dvi__tree *tree, unsigned may, const char *where,
+                          int axis, int count, dvi__local **local)
 {
   const dvi__expression *e;
   dvi__context c;
   if (!dvi__tree_expression(scene, tree, &e) ||
       !dvi__context_make(&c, scene, DVI__MENTIONS_Q | may, where))
     return false;
-  const dvi__value value = dvi__elaborate(&c, e);
+  dvi__value value = dvi__elaborate(&c, e);
+  if (!dvi__failed(value) && axis >= 0) value = dvi__derivative_along(&c, value, axis, e->span);
   bool good = value.shape.rank >= 0 && check_shape(&c, tree, value.shape, count);
   for (int k = 0; k < count && good; k++)
     good = read_component(&c, value.node == NULL ? value.one : value.node[k], may, local + k);
   dvi__context_free(&c);
   return good;
+}
+
+bool dvi__local_read(dvi_scene *scene, const dvi__tree *tree, unsigned may, const char *where,
+                     int count, dvi__local **local)
+{
+  return read_function(scene, tree, may, where, -1, count, local);
+}
+
+bool dvi__local_read_slope(dvi_scene *scene, const dvi__tree *tree, int axis, const char *where,
+                           int count, dvi__local **local)
+{
+  return read_function(scene, tree, 0, where, axis, count, local);
 }
 
 /* ---- evaluation ---- */

@@ -82,7 +82,7 @@ static bool input_derivative(dvi__context *c, int input, dvi__span span, int axi
   return true;
 }
 
-static dvi__value along(dvi__context *c, dvi__value value, int axis, dvi__span span)
+dvi__value dvi__derivative_along(dvi__context *c, dvi__value value, int axis, dvi__span span)
 {
   c->graph->here = span;
   return dvi__chain_rule(c, value, span, input_derivative, axis);
@@ -97,7 +97,7 @@ static dvi__value derivative_value(dvi__context *c, const dvi__expression *e)
   for (int k = 1; k < e->count && !dvi__failed(value); k++) {
     const int axis = find_axis(c, e->part[k]);
     if (axis < 0) return dvi__refused(refuse_axis(c, e->part[k]->span));
-    value = along(c, value, axis, e->span);
+    value = dvi__derivative_along(c, value, axis, e->span);
   }
   return value;
 }
@@ -109,7 +109,7 @@ static dvi__value gradient_value(dvi__context *c, const dvi__expression *e, dvi_
     return dvi__refused(dvi__refuse(c, e->span, "grad is taken of a number, as of u[1]"));
   dvi__value result = dvi__value_make(c, 1, c->scene->jets->dimension, 1);
   for (int d = 0; d < c->scene->jets->dimension && !dvi__failed(result); d++) {
-    const dvi__value one = along(c, a, d, e->span);
+    const dvi__value one = dvi__derivative_along(c, a, d, e->span);
     if (dvi__failed(one)) return one;
     result.node[d] = one.one;
   }
