@@ -57,8 +57,8 @@ typedef struct dvi_scene_range {
   const double *value; /**< [count] */
 } dvi_scene_range;
 
-/** The end of a scene's control problem. free_q and free_p are not 0 for the numbers that are free,
- *  as in dvi_control_options. */
+/** The end of a scene's control problem, or of a path of fields with a density. free_q and free_p
+ *  are not 0 for the numbers that are free, as in dvi_control_options. */
 typedef struct dvi_scene_end {
   const double *q, *p;
   const char *free_q, *free_p;
@@ -294,7 +294,7 @@ const dvi_controls *dvi_scene_controls(const dvi_scene *scene);
 /** Return the name of control i. NULL if i is out of range. Owned by the scene. */
 const char *dvi_scene_control(const dvi_scene *scene, int i);
 
-/** Give the end of the scene's control problem, owned by the scene. Returns 0 if there is none. */
+/** Give the end that the scene has, owned by the scene. Returns 0 if there is none. */
 int dvi_scene_end_of(const dvi_scene *scene, dvi_scene_end *end);
 
 /** Derive the scene by its parameters, for dvi_sensitivity_create. Parameter k is that of

@@ -275,13 +275,16 @@ static bool make(dvi_scene *scene)
 {
   if (scene->density->moving != NULL || scene->density->jets.is_rotation) return make_other(scene);
   dvi__fault_clear();
-  if (!check_motion(scene) || !dvi__density_make_space(scene) || !check_orders(scene)) return false;
+  if (!dvi__density_read_final(scene) || !check_motion(scene) || !dvi__density_make_space(scene) ||
+      !check_orders(scene))
+    return false;
   const dvi_status status = make_field(scene);
   if (status != DVI_OK) return complain(scene, status);
   set_form(scene);
   const bool good = declare_unknowns(scene) && make_start(scene) &&
-                    dvi__density_make_probes(scene) && dvi__choose_field_columns(scene) &&
-                    dvi__lattice_find_symmetries(scene) && choose_step(scene);
+                    dvi__density_make_final(scene) && dvi__density_make_probes(scene) &&
+                    dvi__choose_field_columns(scene) && dvi__lattice_find_symmetries(scene) &&
+                    choose_step(scene);
   scene->jets = NULL; /* from here on the coordinates are the unknowns */
   return good;
 }

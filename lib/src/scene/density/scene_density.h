@@ -102,6 +102,7 @@ struct dvi__scene_density {
   int conditions, condition_room;
   bool has_placed_data;             /* a value or a flux depends on position */
   dvi__local **start, **start_rate; /* [components] or NULL for 0 */
+  dvi__local **final;               /* [components] or NULL without an end */
   struct dvi__density_probe *probe; /* [probes] */
   int probes;
   const dvi__tree *section;               /* density or schroedinger */
@@ -121,6 +122,10 @@ struct dvi__scene_density {
   dvi__scene_rotations *rotations; /* or NULL */
   double ground;                   /* norm of the ground state that is asked for, or 0 */
 };
+
+/* Read the section final, if there is one, and make the end of it. */
+bool dvi__density_read_final(dvi_scene *scene);
+bool dvi__density_make_final(dvi_scene *scene);
 
 /* Return the number of components of all fields. */
 static inline int dvi__components(const dvi_scene *scene)

@@ -85,7 +85,7 @@ enum { FIELD_SECTIONS = sizeof field_sections / sizeof *field_sections, OF_FIELD
 static const char *const density_sections[] = {
     "domain",     "space",  "fields",  "density", "schroedinger", "moving", "mesh",
     "boundary",   "probes", "title",   "method",  "step",         "until",  "initial",
-    "parameters", "sweep",  "damping", "report",  "definitions",  "solve"};
+    "parameters", "sweep",  "damping", "report",  "definitions",  "solve",  "final"};
 enum {
   DENSITY_SECTIONS = sizeof density_sections / sizeof *density_sections,
   OF_DENSITY_ALONE = 6
