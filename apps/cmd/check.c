@@ -204,8 +204,7 @@ static int check_laws(const problem *scene, const char *method)
                                      .fraction = plan->fraction};
   dvi_law law[DVI_LAWS_MAX];
   int count = 0;
-  const dvi_status status = dvi_field_laws(dvi_scene_field(scene->scene), &options, STEPS, law,
-                                           &count);
+  const dvi_status status = dvi_scene_march_laws(scene->scene, &options, STEPS, law, &count);
   if (status != DVI_OK) return library_error(status);
   return tell_laws(method, count, law);
 }
@@ -249,7 +248,10 @@ static void warn_unused(const problem *scene)
 static const char *const details[] = {
     "Of a field's march, such as leapfrog or avi, the laws are measured: energy, charge, "
     "divergence, reciprocity, gauge\n"
-    "invariance and the multisymplectic form formula. Of yee these are charge and divergence: its "
+    "invariance and the multisymplectic form formula. Of multisymplectic steps they are that "
+    "formula, Noether's theorem, and of the box scheme energy and momentum in each place, and of "
+    "Schroedinger's equation the norm. Of yee "
+    "these are charge and divergence: its "
     "other laws are those of\n"
     "leapfrog on the mesh of the boxes. The last three digits of a double are left to "
     "roundings.\n",

@@ -19,7 +19,8 @@ static const catalogue_text *find_template(const char *name)
   const catalogue_text *text = template_texts;
   while (text->name != NULL && strcmp(text->name, name) != 0) text++;
   if (text->name != NULL) return text;
-  (void)usage_error("init: there is no template '%s'; templates: cart, crane, mechanism", name);
+  (void)usage_error("init: there is no template '%s'; templates: cart, crane, field, mechanism",
+                    name);
   return NULL;
 }
 
@@ -47,7 +48,7 @@ static const option command_options[] = {
     {.name = "template",
      OPTION_AT(init_request, template),
      .value = "NAME",
-     .help = "cart, mechanism or crane; default: cart"},
+     .help = "cart, mechanism, crane or field; default: cart"},
     {.name = NULL},
 };
 

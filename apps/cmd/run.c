@@ -10,6 +10,7 @@
 #include "cli/command.h"
 #include "csv/events.h"
 #include "cli/file.h"
+#include "load/density.h"
 #include "load/open.h"
 #include "cli/options.h"
 #include "cli/outputs.h"
@@ -141,6 +142,7 @@ static int check_files(const run_request *request, const char *name)
                               {.option = "out", .path = request->out},
                               {.option = "events", .path = request->events},
                               {.option = "plot", .path = request->plot},
+                              {.option = "map", .path = request->map},
                               {.option = "pvd", .path = request->pvd},
                               {.option = "checkpoint", .path = request->checkpoint}};
   if (is_stream(request->checkpoint))
@@ -148,9 +150,10 @@ static int check_files(const run_request *request, const char *name)
   if (is_stream(request->events) && is_stream(request->out))
     return usage_error("run: --events -: standard output has the rows; give --out FILE, too");
   int code = outputs_plot("run", "plot", request->plot);
-  if (code == DONE) code = scene_spared("run", name, 5, files + 1);
-  if (code == DONE) code = outputs_distinct("run", 5, files + 1);
-  return code == DONE ? outputs_distinct("run", 5, files) : code;
+  if (code == DONE) code = outputs_plot("run", "map", request->map);
+  if (code == DONE) code = scene_spared("run", name, 6, files + 1);
+  if (code == DONE) code = outputs_distinct("run", 6, files + 1);
+  return code == DONE ? outputs_distinct("run", 6, files) : code;
 }
 
 /* Check --verify. A verification writes one table, and starts from no other state than the
@@ -162,6 +165,7 @@ static int check_verify(const run_request *request)
                                {.option = "checkpoint", .path = request->checkpoint},
                                {.option = "resume", .path = request->resume},
                                {.option = "pvd", .path = request->pvd},
+                               {.option = "map", .path = request->map},
                                {.option = "plot", .path = request->plot}};
   if (!request->verify) {
     if (request->digits > 0)
@@ -189,6 +193,8 @@ static int run_check_request(const run_request *request, const char *name)
   if (check_verify(request) != DONE) return USAGE;
   if (request->checkpoint_every > 0 && request->checkpoint == NULL)
     return usage_error("run: --checkpoint-every needs --checkpoint FILE");
+  if (request->map_of != NULL && request->map == NULL)
+    return usage_error("run: --map-of %s names what --map FILE.svg draws", request->map_of);
   if (request->resume != NULL && request->pvd != NULL && access(request->pvd, F_OK) == 0)
     return usage_error("run: --pvd %s is there, and a resumed run would replace its frames; give "
                        "another name",
@@ -208,6 +214,7 @@ static int run_check_request(const run_request *request, const char *name)
   if (code != DONE) return code;
   if (request->checkpoint != NULL && !file_writable(request->checkpoint)) return FAILED;
   if (request->events != NULL && !file_writable(request->events)) return FAILED;
+  if (request->map != NULL && !file_writable(request->map)) return FAILED;
   return request->plot == NULL || file_writable(request->plot) ? DONE : FAILED;
 }
 
@@ -260,6 +267,7 @@ static int run_problem(run_request *request, const char *name)
   scene_warn("run", scene);
   if (request->verify) code = refuse_noise("run: --verify", scene);
   if (code == DONE) code = open_wish("run", scene, &request->method);
+  if (code == DONE) density_warn("run", scene, request->method);
   if (code == DONE) code = place_momenta(request, scene);
   if (code == DONE) code = check_events(request, scene);
   if (code == DONE) code = run_check_settings(request, scene);
@@ -328,6 +336,15 @@ static const char *const details[] = {
     "angles before directions, of a\n"
     "body that only turns its angular velocity; and how energy and other invariants change. "
     "Standard error says what is drawn.\n",
+    "--map draws a field on a line over space and time, from all steps of a mechanical method and "
+    "from the rows of a march. Of\n"
+    "a long run every second, fourth and so on is drawn. A field with a density (section "
+    "'density') "
+    "shows its components, their\n"
+    "rates (u'), and of a complex field psi |psi|^2 and phase(psi). --pvd writes the components "
+    "and "
+    "|psi|^2 of a density at the\n"
+    "vertices of the mesh, or of a domain at about as many points as it has functions.\n",
     "Events of a scene are looked for in every step. One with 'stop: yes' ends the run at its "
     "time: the last row is the state\n"
     "there, and the exit code 0. The columns of --events are event, its name, t, the coordinates "
@@ -467,6 +484,15 @@ static const option command_options[] = {
      .value = "FILE.pvd",
      .help = "of a field: write it at each row beside, as FILE_000000.vtu and so on, and their "
              "list for ParaView"},
+    {.name = "map",
+     OPTION_AT(run_request, map),
+     .value = "FILE.svg",
+     .help = "of a field on a line: draw it in colours over space and time"},
+    {.name = "map-of",
+     OPTION_AT(run_request, map_of),
+     .value = "NAME",
+     .help = "what --map draws, as u', psi_re or 'phase(psi)'; default: the first field, of a "
+             "complex one |psi|^2"},
     {.name = "plot",
      OPTION_AT(run_request, plot),
      .value = "FILE.svg",

@@ -30,7 +30,7 @@ static dvi_status follow(const dvi_schroedinger *well, double *psi, double beat)
   if (!status) status = dvi_march_start(march, &start);
   for (int i = 0; i <= 2 && !status; i++) {
     const double t = i * beat / 4;
-    dvi_schroedinger_values now;
+    dvi_schroedinger_values now = {0};
     status = dvi_march_advance(march, t);
     if (!status) status = dvi_march_sample(march, DVI_FORM_A, 0, NULL, psi);
     if (!status) status = dvi_schroedinger_measure(well, t, psi, &now);

@@ -12,29 +12,38 @@ const dvi_density *density_of(const problem *scene);
 /** Return whether a problem is a field, with a density or on a mesh alone. */
 bool has_field(const problem *scene);
 
+/** Tell that a mechanical method does not keep the norm of Schroedinger's equation. */
+void density_warn(const char *command, const problem *scene, const char *method);
+
+/** Return the number of unknowns of a field. */
+int64_t field_unknowns(const problem *scene);
+
 /** Print what was found, built and chosen, and which steps are stable. */
 void density_tell(const problem *scene);
 
 /** Return the number of coefficients of all components. */
 int64_t density_coefficients(const dvi_density *density);
 
-/** Write fields [count][coefficients] as CSV, a row for each quadrature point, with its position
- * and the values of all components. With several fields the names get numbers from 1. Returns DONE,
- * or complains and returns the exit code. */
-int density_write(const problem *scene, const char *path, int count, const double *U);
-
-/** The values of such fields at the vertices of the scene's mesh. */
+/** The values of some fields at the vertices of the scene's mesh: all components, and |psi|^2 of
+ * complex fields. With several fields the names get numbers from 1. */
 typedef struct density_views {
   int count;
   dvi_view *view; /**< [count] */
   struct density_values *values;
 } density_views;
 
-/** Make views, for a scene with a mesh. Returns DONE, or complains and returns the exit code. Call
+/** Prepare for so many fields. Returns DONE, or complains and returns the exit code. Call
  * density_views_clear afterwards in any case. */
-int density_views_make(const problem *scene, int count, const double *U, density_views *views);
+int density_views_make(const problem *scene, int fields, density_views *views);
 void density_views_clear(density_views *views);
 
-/** Write such views to a .vtu file. */
-int density_view(const problem *scene, const char *path, int count, const double *U);
+/** Evaluate fields [fields][coefficients]. Returns DONE, or complains and returns the exit code. */
+int density_views_fill(density_views *views, const double *U);
+
+/** Write such values as CSV, a row for each vertex with its position. Returns DONE, or complains
+ * and returns the exit code. */
+int density_write(const problem *scene, const char *path, int fields, const double *U);
+
+/** Write such values with the mesh to a .vtu file. */
+int density_view(const problem *scene, const char *path, int fields, const double *U);
 #endif

@@ -18,7 +18,13 @@ int field_open(const char *command, const char *name, const words *settings, pro
   if (dvi_scene_grid_only((*scene)->scene) != NULL) return refuse_grid(scene, false);
   *field = dvi_scene_field((*scene)->scene);
   if (*field != NULL || (density != NULL && (*density = density_of(*scene)) != NULL)) return DONE;
+  const bool has_density = density_of(*scene) != NULL;
   problem_destroy(scene);
+  if (has_density)
+    return usage_error(
+        "%s: this is of local steps of fields on meshes; all steps of the density of "
+        "'%s' are equal, and dvi explain tells below which bound they are stable",
+        command, name);
   return usage_error("%s: '%s' has no field; a scene with the sections mesh and field has one",
                      command, name);
 }

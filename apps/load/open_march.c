@@ -6,51 +6,77 @@
 #include <string.h>
 
 #include "cli/command.h"
+#include "load/density.h"
 #include "load/field.h"
 #include "load/open.h"
 
 enum { MESSAGE_SIZE = 2048 };
 
+/* A word of a sentence, and the section that it is about. */
+typedef struct subject {
+  const char *word, *section;
+} subject;
+
+/* Subjects of sentences on steps of densities. */
+static const subject of_density[] = {{"do not see values", "space"},
+                                     {"does not see values", "space"},
+                                     {"one-form", "density"},
+                                     {"variable", "density"},
+                                     {"no parts", "density"},
+                                     {"kinetic part", "density"},
+                                     {"bounds the step", "step"},
+                                     {"the step ", "step"},
+                                     {"method", "method"},
+                                     {" option", "method"},
+                                     {"weight", "method"},
+                                     {"datum", "boundary"},
+                                     {"condition", "boundary"},
+                                     {"boundary", "boundary"},
+                                     {"cells", "space"},
+                                     {NULL, NULL}};
+
+/* Subjects of sentences on marches of fields on meshes. */
+static const subject of_mesh[] = {{"eps =", "materials"},
+                                  {"mu =", "materials"},
+                                  {"sigma =", "materials"},
+                                  {"function of eps", "materials"},
+                                  {"function of mu", "materials"},
+                                  {"function of sigma", "materials"},
+                                  {"dipole", "sources"},
+                                  {"wave", "sources"},
+                                  {"signal", "sources"},
+                                  {"current", "sources"},
+                                  {"a source", "sources"},
+                                  {"probe", "probes"},
+                                  {"flux ", "probes"},
+                                  {"layers", "boundary"},
+                                  {"phase", "boundary"},
+                                  {"repeats", "boundary"},
+                                  {"conductors", "boundary"},
+                                  {"ascend", "mesh"},
+                                  {"the start", "initial"},
+                                  {"the step ", "step"},
+                                  {"common step", "step"},
+                                  {"fraction", "step"},
+                                  {" option", "method"},
+                                  {" is for ", "method"},
+                                  {"simplices of", "method"},
+                                  {"the star", "star"},
+                                  {NULL, NULL}};
+
 /* Return the section of the scene that a sentence of the library is about, or NULL. A step and a
  * method that the options have are not the scene's. */
-static const char *section_of(const char *sentence, const dvi_march_options *options)
+static const char *section_of(const char *sentence, bool is_density,
+                              const dvi_march_options *options)
 {
-  static const struct {
-    const char *word, *section;
-  } list[] = {{"eps =", "materials"},
-              {"mu =", "materials"},
-              {"sigma =", "materials"},
-              {"function of eps", "materials"},
-              {"function of mu", "materials"},
-              {"function of sigma", "materials"},
-              {"dipole", "sources"},
-              {"wave", "sources"},
-              {"signal", "sources"},
-              {"current", "sources"},
-              {"a source", "sources"},
-              {"probe", "probes"},
-              {"flux ", "probes"},
-              {"layers", "boundary"},
-              {"phase", "boundary"},
-              {"repeats", "boundary"},
-              {"conductors", "boundary"},
-              {"ascend", "mesh"},
-              {"the start", "initial"},
-              {"the step ", "step"},
-              {"common step", "step"},
-              {"fraction", "step"},
-              {" option", "method"},
-              {" is for ", "method"},
-              {"simplices of", "method"},
-              {"the star", "star"}};
-  for (size_t i = 0; i < sizeof list / sizeof *list; i++) {
-    if (strstr(sentence, list[i].word) == NULL) continue;
-    const bool is_step = strcmp(list[i].section, "step") == 0,
-               is_method = strcmp(list[i].section, "method") == 0;
+  for (const subject *at = is_density ? of_density : of_mesh; at->word != NULL; at++) {
+    if (strstr(sentence, at->word) == NULL) continue;
+    const bool is_step = strcmp(at->section, "step") == 0,
+               is_method = strcmp(at->section, "method") == 0;
     if ((is_step && (options->step > 0 || options->fraction > 0)) ||
         (is_method && options->method != NULL))
       return NULL;
-    return list[i].section;
+    return at->section;
   }
   return NULL;
 }
@@ -66,9 +92,13 @@ static bool is_yee_on_mesh(const problem *scene, const char *method)
 static int refuse(dvi_status status, const problem *scene, const dvi_march_options *options)
 {
   char message[MESSAGE_SIZE] = "";
-  const char *sentence = dvi_last_error(), *section = section_of(sentence, options);
+  const bool is_density = density_of(scene) != NULL;
+  const char *sentence = dvi_last_error(), *section = section_of(sentence, is_density, options);
   const char *method = options->method != NULL ? options->method : scene->method;
-  if (scene->terms->damping > 0) {
+  const char *reason = dvi_scene_march_refused(scene->scene, method, &section);
+  if (reason != NULL) {
+    sentence = reason;
+  } else if (scene->terms->damping > 0) {
     section = "damping";
     sentence = "marches of fields have no damping; a conductor has 'sigma', and mechanical methods "
                "such as verlet take the friction";
@@ -115,8 +145,12 @@ bool march_has_step(const char *method)
 
 int check_studied_march(const char *command, const problem *scene, const char *method)
 {
-  const dvi_march_options options = {
-      .size = sizeof options, .method = method, .fraction = 0.5, .potential = 1};
+  const bool has_step = density_of(scene) != NULL && scene->h > 0;
+  const dvi_march_options options = {.size = sizeof options,
+                                     .method = method,
+                                     .step = has_step ? scene->h : 0,
+                                     .fraction = has_step ? 0 : 0.5,
+                                     .potential = 1};
   dvi_march *march = NULL;
   if (!march_has_step(method))
     return usage_error("%s: tents have no common step, so that order and bench do not take them; "
@@ -124,5 +158,9 @@ int check_studied_march(const char *command, const problem *scene, const char *m
                        command);
   const int code = open_march(scene, &options, &march);
   dvi_march_destroy(&march);
-  return code;
+  if (code != DONE || dvi_scene_march_order(scene->scene, method) > 0) return code;
+  return usage_error("%s: short steps of %s do not tend to the motion of the space's own mass, to "
+                     "which they are compared; take space=exact with fem:degree=1, or "
+                     "space=trapezoid with lumped=yes",
+                     command, method);
 }

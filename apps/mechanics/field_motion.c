@@ -2,7 +2,6 @@
 
 #include <dvi/scene.h>
 #include <math.h>
-#include <stdlib.h>
 
 #include "study/clock.h"
 
@@ -28,18 +27,6 @@ static dvi_status watch(dvi_march *march, double steps, double t_end, field_moti
   return status;
 }
 
-/* Set q to A of the unknowns. */
-static dvi_status take_end(const problem *scene, const dvi_march *march, double *q)
-{
-  const int64_t cells = dvi_march_size(march, DVI_FORM_A);
-  double *A = calloc((size_t)cells + 1, sizeof *A);
-  if (A == NULL) return DVI_NO_MEMORY;
-  dvi_status status = dvi_march_sample(march, DVI_FORM_A, 0, NULL, A);
-  if (status == DVI_OK) status = dvi_field_project(dvi_scene_field(scene->scene), A, NULL, q, NULL);
-  free(A);
-  return status;
-}
-
 dvi_status field_motion(const problem *scene, const char *method, double steps, double t_end,
                         bool watched, double *q, field_motion_end *end)
 {
@@ -55,7 +42,7 @@ dvi_status field_motion(const problem *scene, const char *method, double steps, 
   end->seconds = cpu_now() - began;
   if (status == DVI_OK)
     status = watched ? watch(march, steps, t_end, end) : dvi_march_advance(march, t_end);
-  if (status == DVI_OK && q != NULL) status = take_end(scene, march, q);
+  if (status == DVI_OK && q != NULL) status = dvi_scene_march_state(scene->scene, march, q, NULL);
   dvi_march_facts_of(march, &facts);
   end->steps = (double)facts.steps;
   end->updates = (double)facts.updates;

@@ -234,7 +234,6 @@ static double solution_size(const judged_motion *motion)
   return size > 0.0 ? size : 1.0;
 }
 
-/* All marches of fields have order 2. */
 static int init_march(motion_study *study, const char *method, const char *name)
 {
   const problem *scene = study->motion.scene;
@@ -246,7 +245,7 @@ static int init_march(motion_study *study, const char *method, const char *name)
                                    .problem = scene->name,
                                    .words = motion_words(scene),
                                    .extent = t_end,
-                                   .order = 2,
+                                   .order = dvi_scene_march_order(scene->scene, method),
                                    .span = t_end,
                                    .first_parts = t_end / scene->order_h,
                                    .size = solution_size(&study->motion),

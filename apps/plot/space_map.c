@@ -68,24 +68,29 @@ static void set_colours(FILE *script, const space_map *map)
   palette_set(script, least, most);
 }
 
+static int nearest_row(const space_map *map, double t)
+{
+  int near = 0;
+  for (int i = 1; i < map->rows; i++)
+    if (fabs(map->time[i] - t) <= fabs(map->time[near] - t)) near = i;
+  return near;
+}
+
 /* Write the rows at equal times, each that of the nearest time. gnuplot warns of NaN in texts, and
  * so they follow the command as bytes. */
 static void write_rows(FILE *script, const space_map *map, double first, double step)
 {
-  for (int j = 0, near = 0; j < HEIGHT; j++) {
-    const double t = first + j * step;
-    while (near + 1 < map->rows && fabs(map->time[near + 1] - t) <= fabs(map->time[near] - t))
-      near++;
-    (void)fwrite(row_of(map, near), sizeof(double), (size_t)map->width, script);
-  }
+  for (int j = 0; j < HEIGHT; j++)
+    (void)fwrite(row_of(map, nearest_row(map, first + j * step)), sizeof(double),
+                 (size_t)map->width, script);
 }
 
 static void write_script(FILE *script, const void *drawing)
 {
   const map_drawing *d = drawing;
   const space_map *map = d->map;
-  const double dx = (map->to - map->from) / (map->width - 1), first = map->time[0],
-               dt = (map->time[map->rows - 1] - first) / (HEIGHT - 1);
+  const double start = map->time[0], end = map->time[map->rows - 1], first = fmin(start, end),
+               dx = (map->to - map->from) / (map->width - 1), dt = fabs(end - start) / (HEIGHT - 1);
   (void)fputs("set terminal svg size 760,560 enhanced background rgb 'white' font "
               "'Helvetica,13'\nset border lc rgb '#404040'\nunset key\n",
               script);
@@ -93,7 +98,7 @@ static void write_script(FILE *script, const void *drawing)
   gnuplot_setting(script, "xlabel", d->axis);
   gnuplot_setting(script, "ylabel", "t");
   (void)fprintf(script, "set xrange [%.9g:%.9g]\nset yrange [%.9g:%.9g]\n", map->from, map->to,
-                fmin(first, first + (HEIGHT - 1) * dt), fmax(first, first + (HEIGHT - 1) * dt));
+                first, fmax(start, end));
   set_colours(script, map);
   (void)fprintf(script,
                 "plot '-' binary array=(%d,%d) origin=(%.9g,%.9g) dx=%.9g dy=%.9g "
@@ -104,7 +109,7 @@ static void write_script(FILE *script, const void *drawing)
 
 bool space_map_draw(const space_map *map, const char *path, const char *title, const char *axis)
 {
-  if (map->rows >= 2 && map->time[map->rows - 1] > map->time[0])
+  if (map->rows >= 2 && map->time[map->rows - 1] != map->time[0])
     return gnuplot_draw(path, write_script, &(map_drawing){map, title, axis});
   complain("no map in '%s': it needs rows at two times at least", path);
   return false;

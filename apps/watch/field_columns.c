@@ -8,21 +8,14 @@
 #include "cli/command.h"
 #include "csv/choice.h"
 #include "csv/table.h"
-#include "load/field.h"
+#include "load/density.h"
 
 /* ---- what there is ---- */
 
-/* Tell if the columns have what a wave's system watches, beside what a march observes. */
-static bool is_wave(const field_columns *c)
+/* Tell if the columns have what the scene's system watches, beside what a march observes. */
+static bool has_state(const field_columns *c)
 {
-  return dvi_scene_field(c->scene->scene) != NULL && dvi_march_size(c->march, DVI_FORM_A) > 0;
-}
-
-static int64_t count_unknowns(const field_columns *c)
-{
-  int64_t unknowns;
-  (void)dvi_field_unknowns(dvi_scene_field(c->scene->scene), &unknowns);
-  return unknowns;
+  return has_field(c->scene) && dvi_march_size(c->march, DVI_FORM_A) > 0;
 }
 
 /* Tell if one of the first columns has this name. */
@@ -33,18 +26,29 @@ static bool is_among(const field_columns *c, int first, const char *name)
   return false;
 }
 
+/* Tell if a probe of a density takes the name of an observable. Marches on meshes know the probes
+ * themselves. */
+static bool is_probe(const field_columns *c, int invariants, const char *name)
+{
+  for (int i = 0; i < invariants && density_of(c->scene) != NULL; i++)
+    if (strcmp(c->scene->terms->invariants[i].name, name) == 0) return true;
+  return false;
+}
+
 static bool list_all(field_columns *c)
 {
   int observables = 0;
-  const int invariants = is_wave(c) ? c->scene->terms->invariant_count : 0;
+  const int invariants = has_state(c) ? c->scene->terms->invariant_count : 0;
   while (dvi_march_observable(c->march, observables) != NULL) observables++;
   c->all = calloc((size_t)(observables + invariants) + 1, sizeof *c->all);
   if (c->all == NULL) return false;
-  for (int i = 0; i < observables; i++)
-    c->all[c->there++] = (field_column){dvi_march_observable(c->march, i), i, -1};
+  for (int i = 0; i < observables; i++) {
+    const char *name = dvi_march_observable(c->march, i);
+    if (!is_probe(c, invariants, name)) c->all[c->there++] = (field_column){name, i, -1};
+  }
   for (int i = 0; i < invariants; i++) {
     const char *name = c->scene->terms->invariants[i].name;
-    if (!is_among(c, observables, name)) c->all[c->there++] = (field_column){name, -1, i};
+    if (!is_among(c, c->there, name)) c->all[c->there++] = (field_column){name, -1, i};
   }
   return true;
 }
@@ -57,10 +61,12 @@ static const char *name_at(int k, const void *list)
 
 /* ---- what is shown ---- */
 
-/* The laws of charge take a look at the whole field, and are shown when they are asked for. */
+/* The laws of charge take a look at the whole field, and are shown when they are asked for, as the
+ * parts of the energy. */
 static bool is_usual(const char *name)
 {
-  static const char *const on_demand[] = {"gauss", "charge", "divergence"};
+  static const char *const on_demand[] = {"gauss",   "charge",    "divergence",
+                                          "kinetic", "potential", "interaction"};
   for (size_t k = 0; k < sizeof on_demand / sizeof *on_demand; k++)
     if (strcmp(name, on_demand[k]) == 0) return false;
   return true;
@@ -107,16 +113,16 @@ int field_columns_choose(field_columns *columns, const problem *scene, const dvi
   if (good) columns->column = calloc((size_t)columns->there + 1, sizeof *columns->column);
   if (good) columns->place = calloc((size_t)columns->there + 1, sizeof *columns->place);
   if (good) columns->number = calloc((size_t)columns->there + 1, sizeof *columns->number);
-  if (good && is_wave(columns))
-    columns->form = calloc(
-        (size_t)(2 * dvi_march_size(march, DVI_FORM_A) + 2 * count_unknowns(columns)),
-        sizeof *columns->form);
+  if (good && has_state(columns))
+    columns->state = calloc(2 * (size_t)field_unknowns(scene), sizeof *columns->state);
   if (!good || !columns->column || !columns->place || !columns->number ||
-      (is_wave(columns) && !columns->form)) {
+      (has_state(columns) && !columns->state)) {
     complain("out of memory");
     return FAILED;
   }
-  if (asked != NULL || scene->column != NULL) return choose_named(columns, asked);
+  const bool is_told = scene->column != NULL && (density_of(scene) == NULL ||
+                                                 !dvi_scene_plan_of(scene->scene)->usual_columns);
+  if (asked != NULL || is_told) return choose_named(columns, asked);
   choose_usual(columns);
   return DONE;
 }
@@ -127,7 +133,7 @@ void field_columns_clear(field_columns *columns)
   free(columns->column);
   free(columns->place);
   free(columns->number);
-  free(columns->form);
+  free(columns->state);
 }
 
 /* ---- rows ---- */
@@ -140,20 +146,6 @@ void field_columns_header(const field_columns *columns, FILE *stream)
     csv_text(stream, columns->column[i].name);
   }
   (void)fputc('\n', stream);
-}
-
-/* Set q = u and p = -M E of a wave. */
-static dvi_status find_state(field_columns *c, double **q, double **p)
-{
-  const int64_t cells = dvi_march_size(c->march, DVI_FORM_A);
-  const dvi_field *field = dvi_scene_field(c->scene->scene);
-  double *u = c->form, *E = u + cells;
-  *q = E + cells;
-  *p = *q + count_unknowns(c);
-  dvi_status status = dvi_march_sample(c->march, DVI_FORM_A, 0, NULL, u);
-  if (status == DVI_OK) status = dvi_march_sample(c->march, DVI_FORM_E, 0, NULL, E);
-  for (int64_t i = 0; i < cells; i++) E[i] = -E[i];
-  return status == DVI_OK ? dvi_field_project(field, u, E, *q, *p) : status;
 }
 
 static bool measure(field_columns *c, int i, const double *q, const double *p)
@@ -175,11 +167,14 @@ static bool measure(field_columns *c, int i, const double *q, const double *p)
 
 bool field_columns_measure(field_columns *columns)
 {
-  double *q = NULL, *p = NULL;
+  double *const q = columns->state, *const p = q != NULL ? q + field_unknowns(columns->scene)
+                                                         : NULL;
   bool needs_state = false;
   for (int i = 0; i < columns->count; i++)
     needs_state = needs_state || columns->column[i].invariant >= 0;
-  const dvi_status status = needs_state ? find_state(columns, &q, &p) : DVI_OK;
+  const dvi_status status = needs_state
+                                ? dvi_scene_march_state(columns->scene->scene, columns->march, q, p)
+                                : DVI_OK;
   if (status != DVI_OK) return library_error(status) == DONE;
   for (int i = 0; i < columns->count; i++)
     if (!measure(columns, i, q, p)) return false;

@@ -7,7 +7,7 @@
 
 #include "problem.h"
 
-/** A number that a row shows: an observable of the march, or an invariant of a wave's system. */
+/** A number that a row shows: an observable of the march, or an invariant of the scene's system. */
 typedef struct field_column {
   const char *name;
   int observable; /**< its index, or -1 */
@@ -21,7 +21,7 @@ typedef struct field_columns {
   field_column *all, *column; /**< [there], and the shown ones [count] */
   int *place;                 /**< [count] places of the shown ones that were asked for */
   double *number;             /**< [count] as measured */
-  double *form;               /**< room for the forms of a wave, NULL without invariants */
+  double *state;              /**< room for q and p, NULL if the march has none of the system */
 } field_columns;
 
 /** Choose the columns "A,B,.." if `asked` is not NULL, else those that the scene wants, else energy

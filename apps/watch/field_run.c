@@ -9,8 +9,10 @@
 #include "cli/file.h"
 #include "cli/progress.h"
 #include "cli/signals.h"
+#include "load/density.h"
 #include "load/open_march.h"
 #include "watch/field_columns.h"
+#include "watch/field_map.h"
 #include "watch/field_trace.h"
 #include "watch/frames.h"
 #include "watch/run_end.h"
@@ -26,7 +28,9 @@ typedef struct journey {
   field_columns columns;
   field_trace trace;
   frame_list frames;
-  double *vector; /* [cells*3] room of the frames */
+  double *vector;      /* [cells*3] room of the frames */
+  density_views views; /* of a density, which has coefficients and coordinates in that room */
+  field_map map;
   whole_file out;
   progress_line progress;
   double unit, t_start;
@@ -112,11 +116,25 @@ static int make_march(journey *j)
 
 /* ---- rows ---- */
 
+/* Write the components of a field with a density. */
+static bool write_components(journey *j)
+{
+  const dvi_density *density = density_of(j->scene);
+  const double t = dvi_march_time(j->march);
+  double *U = j->vector, *q = U + density_coefficients(density);
+  dvi_status status = dvi_scene_march_state(j->scene->scene, j->march, q, NULL);
+  if (status == DVI_OK) status = dvi_density_lift(density, t, q, U);
+  if (status != DVI_OK) return library_error(status) == DONE;
+  return density_views_fill(&j->views, U) == DONE &&
+         frames_add(&j->frames, t, j->views.count, j->views.view);
+}
+
 /* Write the fields at the time of a row: E and B in the cells, or u of a wave at the vertices. */
 static bool write_frame(journey *j)
 {
   const dvi_scene *scene = j->scene->scene;
   if (!frames_are_wanted(&j->frames)) return true;
+  if (density_of(j->scene) != NULL) return write_components(j);
   const int n = dvi_mesh_dimension(j->frames.mesh);
   double *E = j->vector, *B = E + 3 * (size_t)dvi_mesh_count(j->frames.mesh, n);
   const dvi_view vectors[] = {{"E", E, 3, n}, {"B", B, 3, n}}, value = {"u", j->vector, 1, 0};
@@ -141,6 +159,7 @@ static bool write_row(journey *j)
 static bool look(journey *j, bool row)
 {
   j->row_written = false;
+  if (!field_map_add_march(&j->map, j->march)) return false;
   if (!row && j->trace.t == NULL) return true;
   if (!field_columns_measure(&j->columns)) return false;
   field_trace_add(&j->trace);
@@ -155,7 +174,7 @@ static long next_stop(const journey *j)
   const run_request *r = j->request;
   const long every = r->every, saved = r->checkpoint_every;
   long next = j->unit_count + STEPS_AT_ONCE;
-  if (!r->final || j->trace.t != NULL)
+  if (!r->final || j->trace.t != NULL || r->map != NULL)
     next = next < (j->unit_count / every + 1) * every ? next : (j->unit_count / every + 1) * every;
   if (saved > 0 && next > (j->unit_count / saved + 1) * saved)
     next = (j->unit_count / saved + 1) * saved;
@@ -218,9 +237,13 @@ static int start_frames(journey *j)
   const dvi_mesh *mesh = dvi_scene_mesh(j->scene->scene);
   const int code = frames_start(&j->frames, j->scene->name, mesh, j->request->pvd);
   if (code != DONE) return code;
+  const dvi_density *density = density_of(j->scene);
   const int n = dvi_mesh_dimension(mesh);
-  const size_t cells = (size_t)dvi_mesh_count(mesh, n), vertices = (size_t)dvi_mesh_count(mesh, 0);
-  j->vector = calloc(6 * cells + vertices, sizeof *j->vector);
+  const int64_t cells = dvi_mesh_count(mesh, n), vertices = dvi_mesh_count(mesh, 0),
+                numbers = density != NULL ? density_coefficients(density) + field_unknowns(j->scene)
+                                          : 6 * cells + vertices;
+  j->vector = calloc((size_t)numbers, sizeof *j->vector);
+  if (j->vector != NULL && density != NULL) return density_views_make(j->scene, 1, &j->views);
   if (j->vector != NULL) return DONE;
   complain("out of memory");
   return FAILED;
@@ -236,6 +259,7 @@ static int write_files(journey *j)
   if (run_keeps_files(code) && !frames_keep(&j->frames)) code = FAILED;
   if (run_keeps_files(code) && r->plot != NULL && !field_trace_plot(&j->trace, r->plot))
     code = FAILED;
+  if (run_keeps_files(code) && !field_map_draw(&j->map)) code = FAILED;
   file_discard(&j->out);
   return code;
 }
@@ -249,11 +273,14 @@ int field_run(run_request *request, const problem *scene)
   if (code == DONE) code = make_march(&j);
   if (code == DONE) code = field_columns_choose(&j.columns, scene, j.march, request->columns);
   if (code == DONE && request->pvd != NULL) code = start_frames(&j);
+  if (code == DONE) code = field_map_start(&j.map, scene, request->map, request->map_of);
   j.caught = signals_note(run_ended_again);
   if (code == DONE) code = write_files(&j);
   field_trace_clear(&j.trace);
   field_columns_clear(&j.columns);
   frames_clear(&j.frames);
+  field_map_clear(&j.map);
+  density_views_clear(&j.views);
   free(j.vector);
   dvi_march_destroy(&j.march);
   return code;

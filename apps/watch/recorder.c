@@ -15,6 +15,7 @@
 #include "cli/file.h"
 #include "load/density.h"
 #include "load/field.h"
+#include "watch/field_map.h"
 #include "watch/frames.h"
 #include "watch/run_end.h"
 #include "cli/progress.h"
@@ -35,7 +36,9 @@ typedef struct recorder {
   run_trace trace;
   frame_list frames;
   const dvi_field *field; /* of which frames are written */
-  double *form;           /* [cells] its values */
+  density_views views;    /* or of a density */
+  double *form;           /* [cells] values of the field, or coefficients of the density */
+  field_map map;
   progress_line progress;
   double t_start, t;        /* start of the run, and end of the last observed step */
   double shortest, longest; /* steps of methods that choose them, 0 before the first */
@@ -52,14 +55,11 @@ typedef struct recorder {
 static bool recorder_write_components(recorder *r, const dvi_integrator *integrator)
 {
   const double t = dvi_integrator_time(integrator);
-  density_views views = {.count = 0};
   const dvi_status status = dvi_density_lift(density_of(r->scene), t, dvi_integrator_q(integrator),
                                              r->form);
-  const bool good = (status == DVI_OK || library_error(status) == DONE) &&
-                    density_views_make(r->scene, 1, r->form, &views) == DONE &&
-                    frames_add(&r->frames, t, views.count, views.view);
-  density_views_clear(&views);
-  return good;
+  return (status == DVI_OK || library_error(status) == DONE) &&
+         density_views_fill(&r->views, r->form) == DONE &&
+         frames_add(&r->frames, t, r->views.count, r->views.view);
 }
 
 /* Write the field of a state, in its cells if it is Maxwell's. */
@@ -165,6 +165,9 @@ static int recorder_observe(dvi_integrator *integrator, void *user)
   if (good && row) good = recorder_write_row(r, integrator);
   if (good) good = alarms_look(&r->alarms, integrator);
   if (good && r->trace.t != NULL) trace_add(&r->trace, integrator);
+  if (good)
+    good = field_map_add_state(&r->map, t, dvi_integrator_q(integrator),
+                               dvi_integrator_p(integrator));
   if (r->progress.shown)
     progress_show(&r->progress, (t - r->t_start) / (r->request->t_end - r->t_start), "dvi run");
   r->stop_silently = !good;
@@ -262,6 +265,7 @@ static int write_files(recorder *r, dvi_integrator *integrator)
   if (run_keeps_files(code) && !frames_keep(&r->frames)) code = FAILED;
   if (run_keeps_files(code) && request->plot != NULL && !trace_plot(&r->trace, request->plot))
     code = FAILED;
+  if (run_keeps_files(code) && !field_map_draw(&r->map)) code = FAILED;
   file_discard(&r->out);
   file_discard(&r->events_out);
   trace_clear(&r->trace);
@@ -278,7 +282,7 @@ static int recorder_start_frames(recorder *r)
   const int64_t numbers = density != NULL ? density_coefficients(density)
                                           : dvi_mesh_count(mesh, dvi_field_degree(r->field));
   r->form = calloc((size_t)numbers, sizeof *r->form);
-  if (r->form != NULL) return DONE;
+  if (r->form != NULL) return density != NULL ? density_views_make(r->scene, 1, &r->views) : DONE;
   complain("out of memory");
   return FAILED;
 }
@@ -289,6 +293,7 @@ int record(const run_request *request, const problem *scene, dvi_integrator *int
       .request = request, .scene = scene, .chooses = dvi_integrator_chooses_steps(integrator)};
   int code = columns_choose(&r.columns, scene, integrator, request->columns);
   if (code == DONE && request->pvd != NULL) code = recorder_start_frames(&r);
+  if (code == DONE) code = field_map_start(&r.map, scene, request->map, request->map_of);
   if (code == DONE) code = alarms_read(&r.alarms, scene, &request->alarms);
   if (code == DONE &&
       !energy_watch_start(&r.watch, scene, integrator, energy_bound(scene, request->method)))
@@ -301,6 +306,8 @@ int record(const run_request *request, const problem *scene, dvi_integrator *int
   energy_watch_clear(&r.watch);
   columns_clear(&r.columns);
   frames_clear(&r.frames);
+  density_views_clear(&r.views);
+  field_map_clear(&r.map);
   free(r.form);
   return code;
 }

@@ -7,7 +7,8 @@
 #include "load/pacing.h"
 
 typedef struct run_request {
-  const char *method, *momenta, *columns, *out, *events, *checkpoint, *resume, *plot, *pvd;
+  const char *method, *momenta, *columns, *out, *events, *checkpoint, *resume, *plot, *map, *map_of,
+      *pvd;
   double h, t_end, tolerance; /**< the tolerance is NaN, or refused */
   pacing how;
   long every, checkpoint_every; /**< 0 if not given */

@@ -58,7 +58,7 @@ BEGIN {
   sees["field/spectra"] = "core"
   sees["field/multiscale"] = "core num field/algebra"
   sees["field/space"] = "core num num/fft space field/algebra field/mesh field/multiscale"
-  sees["field/density"] = "core num field/algebra field/space"
+  sees["field/density"] = "core num field/algebra field/mesh field/space"
   sees["field/schroedinger"] = "core num march field/algebra field/space field/density"
   sees["field/multisymplectic"] = "core num march field/algebra"
   sees["field/moving"] = "core num"
@@ -146,7 +146,8 @@ function is_seen(target,   whole) {
 
 function check_public(quoted, header) {
   if (quoted || (header !~ /^dvi\// && !(header in standard)))
-    breach("a public header includes only <dvi/...>, <math.h>, <stdarg.h>, <stddef.h>, <stdint.h>, <string.h>")
+    breach("a public header includes only <dvi/...>, <math.h>, <stdarg.h>, <stddef.h>, " \
+           "<stdint.h>, <string.h>")
 }
 
 # The command, the problems and the examples are users of the library.

@@ -77,7 +77,7 @@ START_TEST(sections_of_densities_belong_together)
           ":1:9:", "the section 'fields' is missing");
   section_refused("schroedinger: {}", 15, "beside it there is no other one");
   section_refused("coordinates: {y: scalar}", 1, "has no section 'coordinates'");
-  section_refused("solve: {mean: 1}", 1, "has no section 'solve'");
+  section_refused("solve: {mean: 1}", 8, "asks for a ground state");
 }
 END_TEST
 
@@ -98,6 +98,9 @@ START_TEST(axes_and_spaces_are_as_described)
                 DVI_BAD_OPTION, ":2:8:", "fen");
   refused("domain: {x: [0, 1]}\nspace: fourier:modes=3\nfields: {u: scalar}\n" WAVE,
           ":2:8:", "fourier is periodic, and the axis x is not");
+  refused("domain: {x: [0, 1]}\nspace: msfem:cells=2,fine=8\nfields: {u: scalar}\n"
+          "density: u'^2/2 - u^2\n",
+          ":4:10:", "msfem has the coefficient a of the summand -a*d(u,x)^2/2");
   refused("mesh: {generator: disk}\nspace: {x: 'fem:degree=1'}\nfields: {u: scalar}\n" WAVE,
           ":2:8:", "a mesh has no axes");
   refused("mesh: {generator: icosphere}\nfields: {u: scalar}\n" WAVE,
@@ -155,6 +158,15 @@ START_TEST(starts_and_probes_are_of_fields)
 }
 END_TEST
 
+START_TEST(expressions_without_a_value_are_shown)
+{
+  check_refused(LINE "density: u'^2/2 - log(x - 0.5)*d(u,x)^2\n", DVI_NOT_FINITE,
+                ":4:19:", "at the start: log(x - 0.5), x - 0.5 = -0.");
+  check_refused(LINE WAVE "boundary: {left: {fixed: 1/t}}\n", DVI_NOT_FINITE,
+                ":5:26:", "at the start: 1/t is not finite");
+}
+END_TEST
+
 START_TEST(schroedingers_equation_has_a_potential_of_position)
 {
   static const char line[] = "domain: {x: [0, 1]}\nspace: fem:degree=2,cells=4\n";
@@ -184,5 +196,6 @@ SUITE(density_errors)
   tcase_add_test(tests, fields_are_numbers_and_vectors);
   tcase_add_test(tests, conditions_are_of_parts_and_do_not_contradict);
   tcase_add_test(tests, starts_and_probes_are_of_fields);
+  tcase_add_test(tests, expressions_without_a_value_are_shown);
   tcase_add_test(tests, schroedingers_equation_has_a_potential_of_position);
 }

@@ -153,6 +153,21 @@ START_TEST(callbacks_agree_with_differences_with_several_fields)
 }
 END_TEST
 
+/* Parts without second derivatives are loads, and kinks but for their points. */
+START_TEST(parts_may_be_linear)
+{
+  static const char *const linear[] = {"density: u'^2/2 + cos(t)*x*u\n",
+                                       "density: u'^2/2 - d(u,x)^2/2 - abs(u)\n",
+                                       "density: u'^2/2 + u'^4 + sin(x)*u\n"};
+  for (int i = 0; i < KINDS; i++)
+    for (int k = 0; k < 3; k++) {
+      char text[TEXT_SIZE];
+      (void)snprintf(text, sizeof text, "space: %s\n%s%s%s", kinds[i], CIRCLE, SCALAR, linear[k]);
+      check_system(text);
+    }
+}
+END_TEST
+
 /* The kernels of a scene and callbacks written by hand differ by the order of roundings alone. */
 START_TEST(a_scene_is_the_field_that_a_program_declares)
 {
@@ -289,6 +304,20 @@ START_TEST(the_short_form_is_a_density)
 }
 END_TEST
 
+/* The lowest energies of the oscillator are hbar sqrt(k/m) (n + 1/2), here with sqrt(k/m) = 1/2. */
+START_TEST(the_short_form_is_an_equation)
+{
+  double energy[2];
+  (void)open_scene("domain: {x: [-12, 12]}\nspace: fem:degree=4,cells=40\nboundary: fixed\n"
+                   "schroedinger: {potential: x^2/2, hbar: 0.5, mass: 4}\n");
+  ck_assert_int_eq(dvi_schroedinger_modes(dvi_scene_schroedinger(scene), 2, energy, NULL), DVI_OK);
+  requires_near(energy[0], 0.125, 1e-6);
+  requires_near(energy[1], 0.375, 1e-5);
+  (void)open_scene(CIRCLE SCALAR SINE_GORDON "space: fem:degree=1,cells=4\n");
+  ck_assert_ptr_null(dvi_scene_schroedinger(scene));
+}
+END_TEST
+
 /* ---- what is watched ---- */
 
 START_TEST(probes_are_values_derivatives_and_integrals)
@@ -337,27 +366,77 @@ START_TEST(a_step_is_a_fraction_of_the_largest_stable_one)
 }
 END_TEST
 
-/* Half of the kink 4 atan(e^x) has the energy 4, less 16 e^-20 or so beyond its end at 10. */
-START_TEST(a_static_state_needs_no_rates)
+/* Solves for the static state of a scene, and returns its first probe there. */
+static double static_probe(const char *text)
 {
-  double U[UNKNOWNS_MOST], q[UNKNOWNS_MOST], energy;
+  double U[UNKNOWNS_MOST], q[UNKNOWNS_MOST], value = 0;
   const double *start, *v, *p;
-  ck_assert_msg(parse_scene("domain: {x: [0, 10]}\nspace: fem:degree=3,cells=30\n" SCALAR
-                            "density: -d(u,x)^2/2 - (1 - cos(u))\n"
-                            "boundary: {x: {fixed: 4*atan(exp(x))}}\n"
-                            "initial: {u: pi*(1 + tanh(x))}\n"
-                            "probes: {energy_of: {integral: 'd(u,x)^2/2 + 1 - cos(u)'}}\n") ==
-                    DVI_OK,
-                "%s", message);
+  ck_assert_msg(parse_scene(text) == DVI_OK, "%s", message);
   const dvi_density *density = dvi_scene_density(scene);
   dvi_scene_start(scene, &start, &v, &p);
   ck_assert_int_eq(dvi_density_lift(density, 0, start, U), DVI_OK);
   ck_assert_msg(dvi_density_solve(density, U, NULL) == DVI_OK, "%s", dvi_last_error());
   ck_assert_int_eq(dvi_density_project(density, U, NULL, q, NULL, NULL), DVI_OK);
   const dvi_invariant *probe = dvi_scene_terms(scene)->invariants;
-  ck_assert_int_eq(probe->value(0, q, NULL, &energy, probe->user), 0);
-  requires_near(energy, 4, 1e-6);
+  ck_assert_int_eq(probe->value(0, q, NULL, &value, probe->user), 0);
+  return value;
+}
+
+/* u is linear: its slope is the flux, less a u where there is a spring. */
+START_TEST(conditions_hold_linear_fields)
+{
+  static const struct {
+    const char *boundary;
+    double value;
+  } list[] = {{"{left: fixed, right: {fixed: 3*x}}", 1.5},
+              {"{left: fixed, right: {free: 2}}", 1},
+              {"{left: fixed, right: {robin: 3, free: 4}}", 0.5},
+              {"{left: {u: {fixed: 1}}, right: {u: {robin: 1}}}", 0.75},
+              {"{x: {fixed: 1 + x}}", 1.5}};
+  for (size_t i = 0; i < sizeof list / sizeof *list; i++) {
+    char text[TEXT_SIZE];
+    (void)snprintf(text, sizeof text,
+                   "domain: {x: [0, 1]}\nspace: fem:degree=1,cells=4\n" SCALAR
+                   "density: -d(u,x)^2/2\nboundary: %s\nprobes: {middle: u(0.5)}\n",
+                   list[i].boundary);
+    requires_near(static_probe(text), list[i].value, 1e-13);
+  }
+  requires_near(static_probe("domain: {x: [0, 1], y: [0, 2]}\nspace: fem:degree=2,cells=2\n" SCALAR
+                             "density: -dot(grad(u), grad(u))/2\n"
+                             "boundary: {bottom: fixed, top: {fixed: 4}, x: periodic}\n"
+                             "probes: {some: 'u(0.3, 0.7)'}\n"),
+                1.4, 1e-13);
+  requires_near(static_probe("mesh: {generator: kuhn, cells: [3, 3]}\n" SCALAR
+                             "density: -dot(grad(u), grad(u))/2\n"
+                             "boundary: {boundary: {fixed: x - 2*y}}\n"
+                             "probes: {some: {of: u^2, at: [0.3, 0.7]}}\n"),
+                1.21, 1e-12);
+}
+END_TEST
+
+/* Half of the kink 4 atan(e^x) has the energy 4, less 16 e^-20 or so beyond its end at 10. */
+START_TEST(a_static_state_needs_no_rates)
+{
+  requires_near(static_probe("domain: {x: [0, 10]}\nspace: fem:degree=3,cells=30\n" SCALAR
+                             "density: -d(u,x)^2/2 - (1 - cos(u))\n"
+                             "boundary: {x: {fixed: 4*atan(exp(x))}}\n"
+                             "initial: {u: pi*(1 + tanh(x))}\n"
+                             "probes: {half: {integral: 'd(u,x)^2/2 + 1 - cos(u)'}}\n"),
+                4, 1e-6);
   ck_assert_ptr_null(dvi_scene_system(scene));
+}
+END_TEST
+
+/* (a u')' = x^2 on [0,1] with u = 0 at both ends. The functions that solve (a phi')' = 0 are exact
+ * at the ends of cells, if both integrals are (Leok 2004, sec. 5.7.1). The points resolve them to
+ * more than 10 digits. */
+START_TEST(multiscale_elements_have_the_coefficient_of_the_density)
+{
+  requires_near(static_probe("domain: {x: [0, 1]}\nspace: msfem:cells=8,fine=400\n" SCALAR
+                             "definitions: {a: 10/(1 + 0.95*sin(2*pi*x/0.025))}\n"
+                             "density: -a*d(u,x)^2/2 - x^2*u\nboundary: fixed\n"
+                             "probes: {middle: u(0.5)}\n"),
+                -3.598584209602927e-3, 1e-10);
 }
 END_TEST
 
@@ -387,15 +466,19 @@ SUITE(density_scenes)
   tcase_add_test(tests, callbacks_agree_with_differences_in_the_plane);
   tcase_add_test(tests, callbacks_agree_with_differences_on_meshes);
   tcase_add_test(tests, callbacks_agree_with_differences_with_several_fields);
+  tcase_add_test(tests, parts_may_be_linear);
   tcase_add_test(tests, a_scene_is_the_field_that_a_program_declares);
   tcase_add_test(tests, sine_gordon_waves_are_the_known_ones);
   tcase_add_test(tests, points_enough_keep_the_momentum_of_a_polynomial);
   tcase_add_test(tests, ends_that_move_carry_a_wave);
   tcase_add_test(tests, the_short_form_moves_plane_waves);
   tcase_add_test(tests, the_short_form_is_a_density);
+  tcase_add_test(tests, the_short_form_is_an_equation);
   tcase_add_test(tests, probes_are_values_derivatives_and_integrals);
   tcase_add_test(tests, unknowns_have_the_names_of_their_fields);
   tcase_add_test(tests, a_step_is_a_fraction_of_the_largest_stable_one);
+  tcase_add_test(tests, conditions_hold_linear_fields);
   tcase_add_test(tests, a_static_state_needs_no_rates);
+  tcase_add_test(tests, multiscale_elements_have_the_coefficient_of_the_density);
   tcase_add_test(tests, points_follow_the_degree_of_the_density);
 }

@@ -128,7 +128,7 @@ static void check_message(void)
 static unsigned evaluate(const dvi_system *system, const dvi_scene *scene)
 {
   enum { WATCHED_MAX = 64 };
-  double p[COORDINATES_MAX], value[WATCHED_MAX], L = 0;
+  double p[COORDINATES_MAX] = {0}, value[WATCHED_MAX] = {0}, L = 0;
   const double *q, *v, *unused;
   const int n = dvi_system_nq(system), count = dvi_system_invariant_count(system);
   fuzz_requires(dvi_scene_coordinate(scene, n - 1) != NULL);

@@ -44,8 +44,8 @@ typedef struct dvi_density_part {
   dvi_density_kind kind;
   const dvi_jet *variable; /**< [variables] all different. Copied */
   int variables;
-  /** [pairs] the variables a >= b by which there are second derivatives. Default: all of them,
-   *  row by row of the lower triangle. Copied */
+  /** [pairs] the variables a >= b by which there are second derivatives. Default (NULL): all of
+   *  them, row by row of the lower triangle. Not NULL with 0 pairs: there are none. Copied */
   const int (*pair)[2];
   int pairs;
   /** l [count], its derivatives l_z [variables*count] and second ones l_zz [pairs*count], variable
@@ -158,6 +158,14 @@ dvi_status dvi_density_solve(const dvi_density *density, double *U, dvi_field_so
  *  general Lagrangian. Periodic axes give momenta "momentum_x" and so on, if the terms say so and
  *  the space keeps translations (fourier).
  *
+ *  Values that move, G(t), stay in L, with a vector potential A(t) = M_ID G' of the masses M_ID
+ *  between coordinates and them. Where a one-form does not change with constants added to a
+ *  component of which no part takes values, the first coefficient of the component stays 0.
+ *
+ *  A part with a potential has a full Hessian on fourier, which is declared for up to 300
+ *  coordinates. Above it is without_hessian. Coefficients of quadratic parts on fourier that vary
+ *  in x leave a potential beside that of their means.
+ *
  *  @param[out] system  owned by the caller, for dvi_system_destroy before the field's end
  *  @retval (others)    as dvi_system_create and dvi_density_fastest */
 dvi_status dvi_density_system(const dvi_density *density, dvi_system **system);
@@ -176,8 +184,8 @@ dvi_status dvi_density_lift_rate(const dvi_density *density, double t, const dou
                                  double *rate);
 
 /** Give coordinates q, velocities v, and momenta p of coefficients U and their rates
- *  [components*functions] at time 0. U and rate may be NULL for 0, and q, v and p NULL if they are
- *  not wanted.
+ *  [components*functions] at time 0. What is fixed or moves is as the conditions say. U and rate
+ *  may be NULL for 0, and q, v and p NULL if they are not wanted.
  *
  *  @retval (others)  as the callbacks fail */
 dvi_status dvi_density_project(const dvi_density *density, const double *U, const double *rate,

@@ -8,6 +8,7 @@
 #include <dvi/density.h>
 #include <dvi/field.h>
 #include <dvi/march.h>
+#include <dvi/schroedinger.h>
 #include <dvi/sensitivity.h>
 #include <dvi/system.h>
 #include <stddef.h>
@@ -35,6 +36,7 @@ typedef struct dvi_scene_plan {
   long every;
   int column_count;
   const char *const *column; /**< names for tables */
+  int usual_columns;         /**< not 0 if these are of a field that does not choose any */
 } dvi_scene_plan;
 
 /** An event of a scene: the sign of an expression changes. */
@@ -84,6 +86,14 @@ typedef struct dvi_scene_facts {
   long value_points, gradient_points, hessian_points; /**< points evaluated so far */
   int quadratic_potentials; /**< number of potentials with constant Hessians */
 } dvi_scene_facts;
+
+/** A field with a density, as the scene declares it: its components are `first` to first +
+ *  components - 1. A complex field has two of them, its real and its imaginary part. */
+typedef struct dvi_scene_declared {
+  const char *name;
+  int first, components;
+  int is_complex; /**< not 0 if it is */
+} dvi_scene_declared;
 
 /** A number high + low, with more digits than a double has. high is the double nearest to it. */
 typedef struct dvi_pair {
@@ -142,6 +152,18 @@ const dvi_density *dvi_scene_density(const dvi_scene *scene);
  *  scene. NULL if there is none. */
 const char *dvi_scene_component(const dvi_scene *scene, int i);
 
+/** Give field i of a scene with a density, in the order of the file. Returns 0 if there is none. */
+int dvi_scene_declared_of(const dvi_scene *scene, int i, dvi_scene_declared *field);
+
+/** Return Schroedinger's equation of a scene with the section schroedinger, owned by the scene. The
+ *  first call makes it. NULL for other scenes, for those whose boundary has values, fluxes or
+ *  robin, or whose interaction depends on time, and if it cannot be made. */
+const dvi_schroedinger *dvi_scene_schroedinger(const dvi_scene *scene);
+
+/** Return the norm of the ground state that the section solve asks for (dvi_schroedinger_ground). 0
+ *  if it asks for none. */
+double dvi_scene_ground_norm(const dvi_scene *scene);
+
 /** Write what was found in a density and what was built of it, one fact a line: fields, parts by
  *  the summands of the expression, the space, the terms, and how well momenta can be kept. Cut off
  *  at size. Nothing for other scenes. */
@@ -150,7 +172,9 @@ void dvi_scene_density_explain(const dvi_scene *scene, char *text, size_t size);
 /** Give the options of dvi_field_solve that the scene sets. Returns 0 if it has no field. */
 int dvi_scene_solve_options(const dvi_scene *scene, dvi_field_solve_options *options);
 
-/** Tell if a method is one of marches (dvi/march.h), for a scene of a field.
+/** Tell if a method is one of marches, for a scene of a field: those of dvi/march.h and yee, and
+ *  for a density multisymplectic (dvi/multisymplectic.h) and, with the section schroedinger, those
+ *  of dvi/schroedinger.h.
  *
  *  @param method  its specification. NULL for the scene's own
  *  @return 1 if it is, 0 if it is not, or for a scene without a field */
@@ -165,10 +189,41 @@ int dvi_scene_marches(const dvi_scene *scene, const char *method);
  *  @param[out] march    owned by the caller, for dvi_march_destroy before the scene's end
  *  @retval DVI_BAD_OPTION    the method is not one of marches
  *  @retval DVI_UNSUPPORTED   the scene has no mesh, and the method is not yee; it has a damping; or
- *                            the method is yee, and the star is not circumcentric
+ *                            the method is yee, and the star is not circumcentric; or
+ *                            dvi_scene_march_refused tells why
  *  @retval (others)          as dvi_march_create, dvi_yee_create and dvi_march_start */
 dvi_status dvi_scene_march_create(const dvi_scene *scene, const dvi_march_options *options,
                                   dvi_march **march);
+
+/** Tell why a scene with a density cannot have a march. NULL if it may, as far as the scene's kinds
+ *  of domain and space go, or if the method is none of marches.
+ *
+ *  @param[out] section  the scene's section that is to blame. Unchanged without a reason */
+const char *dvi_scene_march_refused(const dvi_scene *scene, const char *method,
+                                    const char **section);
+
+/** Return the order in time of a march to the motion of the scene's system. 0 if it has another
+ *  limit: the steps of multisymplectic have their own mass in space, which is that of fem with the
+ *  weight exact, and lumped with the weight trapezoid. 0, too, if the method is none of marches. */
+int dvi_scene_march_order(const dvi_scene *scene, const char *method);
+
+/** Measure the laws of a march of the scene's field that begins at random: dvi_field_laws,
+ *  dvi_multisymplectic_laws, or the change of the "norm", from 1, of Schroedinger's equation.
+ *
+ *  @param      options  with a method
+ *  @param[out] law      [DVI_LAWS_MAX]
+ *  @retval DVI_UNSUPPORTED  the scene has no such march
+ *  @retval (others)         as those functions */
+dvi_status dvi_scene_march_laws(const dvi_scene *scene, const dvi_march_options *options, int steps,
+                                dvi_law *law, int *count);
+
+/** Give the state of the scene's system at the time of a march: coordinates q [nq] and, unless it
+ *  is NULL, momenta p [nv].
+ *
+ *  @retval DVI_UNSUPPORTED  the march has no A, or the scene no system
+ *  @retval (others)         as dvi_march_sample and the system */
+dvi_status dvi_scene_march_state(const dvi_scene *scene, const dvi_march *march, double *q,
+                                 double *p);
 
 /** Give E or B of a march of the scene's field as vectors of space in the cells of its mesh.
  *
@@ -178,8 +233,9 @@ dvi_status dvi_scene_march_create(const dvi_scene *scene, const dvi_march_option
 dvi_status dvi_scene_vectors(const dvi_scene *scene, const dvi_march *march, dvi_march_form form,
                              double *vector);
 
-/** Return the mesh of a scene of fields, owned by the scene. That of a grid for yee, which does
- *  without, is made by the first call. NULL without a mesh, or without memory. */
+/** Return the mesh of a scene of fields, owned by the scene. That of a grid for yee, and that of a
+ *  domain (dvi_space_mesh), which do without, are made by the first call. NULL without a mesh, or
+ *  without memory. */
 const dvi_mesh *dvi_scene_mesh(dvi_scene *scene);
 
 /** Tell why a scene of a field has a grid for yee, and neither mesh nor system: what only a grid

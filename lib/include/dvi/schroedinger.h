@@ -33,8 +33,8 @@ typedef struct dvi_schroedinger_terms {
   size_t size;            /**< sizeof(dvi_schroedinger_terms) */
   const dvi_space *space; /**< shared. Required */
   double hbar, mass;      /**< above 0. Default: 1 */
-  /** The potential V [count] at points x [dimension*count] axis by axis, finite. Returns 0, or
-   *  another number for a failure. Default: 0 */
+  /** The potential V [count] at points x [dimension*count] axis by axis, finite and up to 1e100.
+   *  Returns 0, or another number for a failure. Default: 0 */
   int (*potential)(int64_t count, double t, const double *x, double *V, void *user);
   int depends_on_time; /**< not 0 if V depends on t. Else that of t = 0 is taken once */
   double interaction;  /**< beta, if it is the same everywhere. Default: 0 */
@@ -106,6 +106,7 @@ const dvi_space *dvi_schroedinger_space(const dvi_schroedinger *equation);
  *  @param      psi     [2*functions]. Fixed functions count as 0
  *  @param[out] values  unchanged on failure
  *  @retval DVI_BAD_ARGUMENT  an argument is missing or not finite
+ *  @retval DVI_NOT_FINITE    the norm or the energy overflows
  *  @retval DVI_NO_MEMORY     there is no memory
  *  @retval (others)          as the potential fails */
 dvi_status dvi_schroedinger_measure(const dvi_schroedinger *equation, double t, const double *psi,

@@ -2,8 +2,8 @@
  *  programs have the same digits on every machine, whatever C library it has, and so that loops
  *  become vectors.
  *
- *  x = n pi/2 + r, |r| <= pi/4, with pi/2 in parts of 33 bits, whose products with n are exact (Cody
- *  and Waite 1980, ch. 8). r is kept as a sum of two numbers. Sine and cosine of r are minimax
+ *  x = n pi/2 + r, |r| <= pi/4, with pi/2 in parts of 33 bits, whose products with n are exact
+ *  (Cody and Waite 1980, ch. 8). r is kept as a sum of two numbers. Sine and cosine of r are minimax
  *  polynomials of degree 13 and 14, with the coefficients of Sun's fdlibm (1993). Results are right
  *  to 0.85 units in the last place. Compile without contraction of products and sums. */
 #ifndef DVI_SINES_H
@@ -35,8 +35,8 @@ static inline dvi_reduced_angle dvi_reduce_angle(double x)
   return angle;
 }
 
-/** Return 1 if the reduction is right: n has at most 19 bits, so that its products with the first two
- * parts are exact, and the error of r, below 2^-100, is small beside it. NaN is not plain. */
+/** Return 1 if the reduction is right: n has at most 19 bits, so that its products with the first
+ *  two parts are exact, and the error of r, below 2^-100, is small beside it. NaN is not plain. */
 static inline int dvi_angle_is_plain(double x)
 {
   const double r = fabs(dvi_reduce_angle(x).r);
@@ -46,30 +46,31 @@ static inline int dvi_angle_is_plain(double x)
 /** Compute the sine of r + tail, |r| up to pi/4. */
 static inline double dvi_sine_polynomial(double r, double tail)
 {
-  const double z = r * r, v = z * r,
-               rest = 8.33333333332248946124e-03 +
-                      z * (-1.98412698298579493134e-04 +
-                           z * (2.75573137070700676789e-06 + z * (-2.50507602534068634195e-08 +
-                                                                  z * 1.58969099521155010221e-10)));
-  return r - ((z * (0.5 * tail - v * rest) - tail) - v * -1.66666666666666324348e-01);
+  const double z = r * r, cube = z * r,
+               higher =
+                   8.33333333332248946124e-03 +
+                   z * (-1.98412698298579493134e-04 +
+                        z * (2.75573137070700676789e-06 +
+                             z * (-2.50507602534068634195e-08 + z * 1.58969099521155010221e-10)));
+  return r - ((z * (0.5 * tail - cube * higher) - tail) - cube * -1.66666666666666324348e-01);
 }
 
 /** Compute the cosine of r + tail, |r| up to pi/4. */
 static inline double dvi_cosine_polynomial(double r, double tail)
 {
   const double z = r * r,
-               rest = 4.16666666666666019037e-02 +
-                      z * (-1.38888888888741095749e-03 +
-                           z * (2.48015872894767294178e-05 +
-                                z * (-2.75573143513906633035e-07 +
-                                     z * (2.08757232129817482790e-09 +
-                                          z * -1.13596475577881948265e-11)))),
+               higher = 4.16666666666666019037e-02 +
+                        z * (-1.38888888888741095749e-03 +
+                             z * (2.48015872894767294178e-05 +
+                                  z * (-2.75573143513906633035e-07 +
+                                       z * (2.08757232129817482790e-09 +
+                                            z * -1.13596475577881948265e-11)))),
                half = 0.5 * z, upper = 1.0 - half;
-  return upper + (((1.0 - upper) - half) + (z * (z * rest) - r * tail));
+  return upper + (((1.0 - upper) - half) + (z * (z * higher) - r * tail));
 }
 
 /** Return `sine` after an even number of quarter turns and `cosine` after an odd one, with the sign
- * turned after two and three. */
+ *  turned after two and three. */
 static inline double dvi_turned_sine(uint64_t quarters, double sine, double cosine)
 {
   const uint64_t odd = 0 - (quarters & 1), negative = (quarters & 2) << 62;

@@ -132,6 +132,20 @@ dvi_status dvi_space_apply(const dvi_space *space, const int *order, const doubl
 dvi_status dvi_space_evaluate(const dvi_space *space, const int *order, const double *U,
                               int64_t count, const double *x, double *values);
 
+/** Make a mesh on which functions of the space can be shown, by their values at its vertices
+ *  (dvi_space_evaluate).
+ *
+ *  Of a box it has lines, rectangles or boxes. The cells of an axis are divided into k equal parts
+ *  for polynomials of degree k, and into F for msfem, and the axis of fourier into 2 K + 1. An axis
+ *  has at most 4096 parts. The vertices stand with the first axis running slowest, and the ends of
+ *  a periodic axis are two. The mesh of a space on a mesh is shared.
+ *
+ *  @param[out] mesh  owned by the caller, for dvi_mesh_destroy. NULL on failure
+ *  @retval DVI_BAD_ARGUMENT  an argument is missing
+ *  @retval DVI_BAD_SIZE      the mesh would have too many vertices
+ *  @retval DVI_NO_MEMORY     there is no memory */
+dvi_status dvi_space_mesh(const dvi_space *space, dvi_mesh **mesh);
+
 /** Give coefficients [functions] of a function f: those that interpolate at the nodes of fem,
  *  legendre, chebyshev and msfem, and otherwise those nearest to f at the quadrature points in the
  *  norm of the quadrature. In a box each axis has its own sort.

@@ -111,7 +111,7 @@ static dvi_status look_at_systems(dvi_ensemble *e, const char *method,
   if (e->bound) return DVI_OK;
   dvi_integrator_destroy(&e->integrators[--e->integrator_count]);
   for (int k = 0; k < o->members && (late || o->systems[0]->qq.start != NULL); k++)
-    DVI_TRY(dvi__system_prepare_hessian(o->systems[k]));
+    DVI_TRY(dvi__system_complete_patterns(o->systems[k]));
   for (int i = 0; i < e->threads; i++) {
     e->workers[i].scene = dvi__duplicate(o->systems[0], 1, sizeof *o->systems[0]);
     if (e->workers[i].scene == NULL) return dvi__fail(DVI_NO_MEMORY, "ensemble: no memory");

@@ -175,8 +175,8 @@ dvi_status dvi_march_load(dvi_march *march, const char *path)
   if (march == NULL || path == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "march: a march and a file's name are needed");
   (void)snprintf(name, sizeof name, "checkpoint %s", path);
-  DVI_TRY(dvi__sections_read(path, &sections));
-  const dvi_status status = march->kind->load(march->self, &sections);
+  dvi_status status = dvi__sections_read(path, &sections);
+  if (status == DVI_OK) status = march->kind->load(march->self, &sections);
   dvi__sections_clear(&sections);
   if (status == DVI_OK) march->started = 1;
   return status;

@@ -11,7 +11,7 @@ expect 0 'standard output' init -
 same out cart.yaml 'standard output has what the file has'
 
 # Every template is a scene that runs, with right derivatives, and in C.
-for template in cart mechanism crane; do
+for template in cart mechanism crane field; do
   expect 0 "$template" init "$template-here.yaml" --template $template
   expect 0 "$template: derivatives" check "$template-here.yaml"
   expect 0 "$template: a run" run "$template-here.yaml" --final
@@ -20,6 +20,7 @@ expect 0 'a method of the claimed order' order mechanism-here.yaml
 expect 0 'another parameter' run mechanism-here.yaml --set torque=0 --set a0=1 --final
 expect 0 'C' emit-c mechanism-here.yaml --out mechanism.c
 expect 2 'controls in C' emit-c crane-here.yaml --out crane.c
+expect 2 'a field in C' emit-c field-here.yaml --out field.c
 # With sanitizers this takes minutes.
 if [ -z "${DVI_TEST_FEWER:-}" ]; then
   expect 0 'control' control crane-here.yaml --out crane.csv
@@ -29,7 +30,7 @@ fi
 expect 0 'sensitivities' gradient crane-here.yaml
 says out '^objective,-[0-9.]*,$' 'the objective'
 expect 2 'no template' init new.yaml --template boat
-says err 'templates: cart, crane, mechanism' 'which there are'
+says err 'templates: cart, crane, field, mechanism' 'which there are'
 [ ! -e new.yaml ] || fail 'a file without a template'
 
 echo mine >mine.yaml

@@ -58,6 +58,35 @@ START_TEST(mass_is_one_and_stiffness_diagonal)
 }
 END_TEST
 
+/* l = 2 u^2, which makes modes up to k = 2 unstable. */
+static int hill(int count, double t, const double *x, const double *z, double *l, double *l_z,
+                double *l_zz, void *user)
+{
+  (void)t, (void)x, (void)user;
+  for (int k = 0; k < count; k++) {
+    if (l != NULL) l[k] = 2 * z[k] * z[k];
+    if (l_z != NULL) l_z[k] = 4 * z[k];
+    if (l_zz != NULL) l_zz[k] = 4;
+  }
+  return 0;
+}
+
+START_TEST(fastest_frequency_is_that_of_the_stable_modes)
+{
+  dvi_density_part parts[] = {kinetic_part, klein_gordon_part, elastic_part};
+  double omega;
+  parts[1].density = hill;
+  density_field field = make_field("fourier:modes=6", 1, parts, 3);
+  ck_assert_int_eq(dvi_density_fastest(field.density, &omega), DVI_OK);
+  ck_assert(omega * omega > 32 - 1e-9 && omega * omega < 32 * 1.0022);
+  end_density(&field);
+  field = make_field("fourier:modes=6", 1, parts, 2);
+  ck_assert_int_eq(dvi_density_fastest(field.density, &omega), DVI_OK);
+  ck_assert_double_eq(omega, 0);
+  end_density(&field);
+}
+END_TEST
+
 /* l = -(2 + cos x) u_x^2/2: 2 is in the matrix, and cos x in a potential. */
 static int varied(int count, double t, const double *x, const double *z, double *l, double *l_z,
                   double *l_zz, void *user)
@@ -155,7 +184,7 @@ START_TEST(momentum_is_exact_without_aliasing)
 {
   static const char *const methods[] = {"verlet", "midpoint", "galerkin:degree=2", "imex"};
   for (int i = 0; i < 4; i++) {
-    ck_assert_double_le(drift_of_momentum("fourier:modes=8,points=33", methods[i]), 1e-13);
+    ck_assert_double_le(drift_of_momentum("fourier:modes=8,points=33", methods[i]), 1e-14);
     ck_assert_double_ge(drift_of_momentum("fourier:modes=8,points=17", methods[i]), 1e-6);
   }
 }
@@ -176,6 +205,21 @@ static int rate_2d(int64_t count, const double *x, double *f, void *user)
   for (int64_t k = 0; k < count; k++) f[k] = 0.3 * sin(x[k] + x[count + k]);
   return 0;
 }
+
+START_TEST(momenta_of_two_axes_are_exact_without_aliasing)
+{
+  const dvi_density_part parts[] = {kinetic_part, elastic_part_2d, double_well_part};
+  density_field field = make_field("fourier:modes=3,points=13", 2, parts, 3);
+  double before[3], after[3];
+  set_density(&field, start_2d, rate_2d, NULL);
+  ck_assert_str_eq(dvi_system_invariant_name(field.system, 2), "momentum_y");
+  ck_assert_int_eq(dvi_system_invariants(field.system, 0, field.q, field.p, before), DVI_OK);
+  run_density(&field, "verlet", 0, 0.05, 100);
+  ck_assert_int_eq(dvi_system_invariants(field.system, 5, field.q, field.p, after), DVI_OK);
+  for (int i = 1; i < 3; i++) ck_assert_double_eq_tol(after[i], before[i], 1e-13);
+  end_density(&field);
+}
+END_TEST
 
 /* The value at the origin is that of a numpy program with 24^2 modes and steps of order 8. */
 START_TEST(pendula_on_a_torus_have_a_known_state)
@@ -301,6 +345,15 @@ START_TEST(solitons_have_the_errors_of_the_poisson_form)
 }
 END_TEST
 
+/* The slope of splines of degree 4 has order 4. Two-forms are regular for odd numbers of cells. */
+START_TEST(solitons_on_splines_have_the_order_of_a_slope)
+{
+  const double coarse = kdv_error("spline:degree=4,cells=101", "vprk:nodes=2", 100),
+               fine = kdv_error("spline:degree=4,cells=201", "vprk:nodes=2", 100);
+  ck_assert_double_ge(log2(coarse / fine), 3.8);
+}
+END_TEST
+
 START_TEST(kdv_agrees_with_differences)
 {
   static const char *const kinds[] = {"fourier:modes=6", "spline:degree=3,cells=11"};
@@ -310,6 +363,9 @@ START_TEST(kdv_agrees_with_differences)
     dvi_density_explain(field.density, text, sizeof text);
     ck_assert_msg(strstr(text, "1 constant left out") != NULL, "%s", text);
     ck_assert_msg(strstr(text, "one-form: constant gradients") != NULL, "%s", text);
+    double eigenvalue[6];
+    ck_assert_int_eq(dvi_density_modes(field.density, NULL, NULL, eigenvalue, NULL),
+                     DVI_UNSUPPORTED);
     check_density(&field, 1e-6);
     end_density(&field);
   }
@@ -407,11 +463,14 @@ SUITE(density_fourier)
 {
   tcase_add_test(tests, callbacks_agree_with_differences);
   tcase_add_test(tests, mass_is_one_and_stiffness_diagonal);
+  tcase_add_test(tests, fastest_frequency_is_that_of_the_stable_modes);
   tcase_add_test(tests, coefficients_that_vary_have_a_potential_of_their_own);
   tcase_add_test(tests, masses_that_vary_are_refused);
   tcase_add_test(tests, momentum_is_exact_without_aliasing);
+  tcase_add_test(tests, momenta_of_two_axes_are_exact_without_aliasing);
   tcase_add_test(tests, pendula_on_a_torus_have_a_known_state);
   tcase_add_test(tests, solitons_have_the_errors_of_the_poisson_form);
+  tcase_add_test(tests, solitons_on_splines_have_the_order_of_a_slope);
   tcase_add_test(tests, kdv_agrees_with_differences);
   tcase_add_test(tests, solitons_have_known_invariants);
   tcase_add_test(tests, momentum_of_solitons_is_exact_without_aliasing);

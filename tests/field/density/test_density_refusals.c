@@ -287,6 +287,194 @@ START_TEST(conditions_that_a_field_cannot_have_are_refused)
 }
 END_TEST
 
+static int zero_datum(int64_t count, double t, const double *x, double *datum, void *user)
+{
+  (void)t, (void)x, (void)user;
+  for (int64_t k = 0; k < count; k++) datum[k] = 0;
+  return 0;
+}
+
+static const dvi_density_condition moving = {
+    .part = "left", .kind = DVI_FIXED, .datum = zero_datum, .rate = still};
+
+/* Tries terms on a square, and requires a status with some words. */
+static void refuse_on_square(const char *kind, int periodic, dvi_density_terms terms,
+                             dvi_status status, const char *words)
+{
+  dvi_space *space = make_density_space(kind, 2, 0, 1, periodic);
+  dvi_density *density = NULL;
+  terms.size = sizeof terms;
+  terms.space = space;
+  if (terms.components == 0) terms.components = 1;
+  const dvi_status found = dvi_density_create(&terms, &density);
+  ck_assert_msg(found == status, "%s: %s", words, found == DVI_OK ? "taken" : dvi_last_error());
+  check_words(words);
+  dvi_space_destroy(&space);
+}
+
+START_TEST(values_move_where_functions_have_nodes)
+{
+  const dvi_density_part parts[] = {kinetic_part, elastic_part_2d};
+  const dvi_density_terms terms = {
+      .part = parts, .parts = 2, .condition = &moving, .conditions = 1};
+  refuse_on_square("spline:degree=2,cells=3", 0, terms, DVI_UNSUPPORTED,
+                   "values on \"left\" move, and functions are not 1 at nodes: take kind=fem");
+}
+END_TEST
+
+START_TEST(values_of_one_forms_do_not_move)
+{
+  static const dvi_jet pair[] = {{.order = {1}}, {.rate = 1}};
+  const dvi_density_part form = {
+      .kind = DVI_DENSITY_ONE_FORM, .variable = pair, .variables = 2, .density = circle_form};
+  const dvi_density_terms terms = {
+      .part = &form, .parts = 1, .condition = &moving, .conditions = 1};
+  refuse_on("fem:degree=1,cells=4", 0, terms, DVI_UNSUPPORTED,
+            "values move on the boundary of a field of first order");
+}
+END_TEST
+
+/* l = u u_t^2/2 as a general part, and l = u^2 v_t as a one-form. */
+static int product(int count, double t, const double *x, const double *z, double *l, double *l_z,
+                   double *l_zz, void *user)
+{
+  const double power = *(const double *)user; /* of the rate */
+  (void)t, (void)x;
+  for (int k = 0; k < count; k++) {
+    const double u = z[k], v = z[count + k];
+    const int is_form = power == 1;
+    if (l != NULL) l[k] = is_form ? u * u * v : 0.5 * u * v * v;
+    if (l_z != NULL) {
+      l_z[k] = is_form ? 2 * u * v : 0.5 * v * v;
+      l_z[count + k] = is_form ? u * u : u * v;
+    }
+    if (l_zz != NULL) {
+      l_zz[k] = is_form ? 2 * v : 0;
+      l_zz[count + k] = is_form ? 2 * u : v;
+      l_zz[2 * count + k] = is_form ? 0 : u;
+    }
+  }
+  return 0;
+}
+
+START_TEST(full_matrices_of_many_modes_are_refused)
+{
+  static const dvi_jet own[] = {{0}, {.rate = 1}}, pair[] = {{0}, {.component = 1, .rate = 1}};
+  double power = 2;
+  dvi_density_part part = {.kind = DVI_DENSITY_GENERAL,
+                           .variable = own,
+                           .variables = 2,
+                           .density = product,
+                           .user = &power};
+  dvi_density_terms terms = {.part = &part, .parts = 1};
+  refuse_on_square("fourier:modes=9", 1, terms, DVI_UNSUPPORTED,
+                   "general parts have full Hessians on fourier, which are for at most 300 "
+                   "coordinates, not 361");
+  power = 1;
+  part.kind = DVI_DENSITY_ONE_FORM, part.variable = pair;
+  terms.components = 2;
+  refuse_on_square("fourier:modes=6", 1, terms, DVI_UNSUPPORTED,
+                   "a one-form that is not linear with constant coefficients has a full matrix on "
+                   "fourier, which is for at most 300 coordinates, not 338");
+}
+END_TEST
+
+START_TEST(static_states_of_too_many_modes_are_refused)
+{
+  const dvi_density_part parts[] = {elastic_part_2d, sine_gordon_part};
+  density_field field = make_density(make_density_space("fourier:modes=23,points=48", 2, 0, 1, 1),
+                                     parts, 2, NULL, 0);
+  field.U[0] = 1;
+  ck_assert_int_eq(dvi_density_solve(field.density, field.U, NULL), DVI_UNSUPPORTED);
+  check_words("part 'pendula' has a full Hessian on fourier, which is for at most 2000 "
+              "coordinates, not 2209");
+  end_density(&field);
+}
+END_TEST
+
+/* l = -exp(u) has no static state, and cubes of infinite numbers are not finite. */
+static int without_end(int count, double t, const double *x, const double *z, double *l,
+                       double *l_z, double *l_zz, void *user)
+{
+  (void)t, (void)x, (void)user;
+  for (int k = 0; k < count; k++) {
+    if (l != NULL) l[k] = -exp(z[k]);
+    if (l_z != NULL) l_z[k] = -exp(z[k]);
+    if (l_zz != NULL) l_zz[k] = -exp(z[k]);
+  }
+  return 0;
+}
+
+START_TEST(static_states_that_do_not_exist_are_not_found)
+{
+  dvi_density_part part = sine_gordon_part;
+  part.density = without_end;
+  density_field field = make_density(make_density_space("fem:degree=1,cells=4", 1, 0, 1, 0), &part,
+                                     1, NULL, 0);
+  ck_assert_int_eq(dvi_density_solve(field.density, field.U, NULL), DVI_NOT_CONVERGED);
+  check_words("Newton's method stopped after 60 iterations");
+  ck_assert_double_eq(field.U[0], 0);
+  field.U[0] = 1e9;
+  ck_assert_int_eq(dvi_density_solve(field.density, field.U, NULL), DVI_NOT_FINITE);
+  check_words("the gradient of the start is not finite");
+  end_density(&field);
+}
+END_TEST
+
+START_TEST(fluxes_want_facets_of_the_boundary)
+{
+  const dvi_generator_options square = {.size = sizeof square, .dimension = 2, .cells = {2, 2}};
+  static const int corner[] = {0};
+  dvi_mesh *mesh = NULL, *marked = NULL;
+  dvi_space *space = NULL;
+  dvi_density *density = NULL;
+  int width;
+  ck_assert_int_eq(dvi_mesh_generate("kuhn", &square, &mesh), DVI_OK);
+  const dvi_mesh_part point = {.name = "corner", .degree = 0, .count = 1, .vertex = corner};
+  const dvi_mesh_terms terms = {.size = sizeof terms,
+                                .dimension = 2,
+                                .space = 2,
+                                .points = dvi_mesh_count(mesh, 0),
+                                .point = dvi_mesh_points(mesh),
+                                .kind = dvi_mesh_kind(mesh),
+                                .cells = dvi_mesh_count(mesh, 2),
+                                .vertex = dvi_mesh_vertices(mesh, 2, &width),
+                                .part = &point,
+                                .parts = 1};
+  ck_assert_msg(dvi_mesh_create(&terms, &marked) == DVI_OK, "%s", dvi_last_error());
+  const dvi_space_options options = {
+      .size = sizeof options, .kind = "fem:degree=1", .mesh = marked};
+  ck_assert_msg(dvi_space_create(&options, &space) == DVI_OK, "%s", dvi_last_error());
+  const dvi_density_part parts[] = {kinetic_part, elastic_part_2d};
+  const dvi_density_condition flux = {.part = "corner", .datum = zero_datum};
+  const dvi_density_terms field = {.size = sizeof field,
+                                   .space = space,
+                                   .components = 1,
+                                   .part = parts,
+                                   .parts = 2,
+                                   .condition = &flux,
+                                   .conditions = 1};
+  ck_assert_int_eq(dvi_density_create(&field, &density), DVI_BAD_ARGUMENT);
+  check_words("a flux is given on \"corner\", which has no facet of the boundary");
+  dvi_space_destroy(&space);
+  dvi_mesh_destroy(&marked);
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
+
+START_TEST(modes_are_as_many_as_unknowns)
+{
+  const dvi_density_part parts[] = {kinetic_part, elastic_part};
+  const dvi_modes_options many = {.size = sizeof many, .count = 6};
+  double eigenvalue[6];
+  density_field field = make_density(make_density_space("fem:degree=1,cells=4", 1, 0, 1, 0), parts,
+                                     2, NULL, 0);
+  ck_assert_int_eq(dvi_density_modes(field.density, &many, NULL, eigenvalue, NULL), DVI_BAD_SIZE);
+  check_words("6 modes of 5 unknowns asked");
+  end_density(&field);
+}
+END_TEST
+
 /* ---- questions ---- */
 
 START_TEST(questions_without_an_answer_are_refused)
@@ -391,6 +579,13 @@ SUITE(density_refusals)
   tcase_add_test(tests, singular_two_forms_are_refused);
   tcase_add_test(tests, conditions_without_sense_are_refused);
   tcase_add_test(tests, conditions_that_a_field_cannot_have_are_refused);
+  tcase_add_test(tests, values_move_where_functions_have_nodes);
+  tcase_add_test(tests, values_of_one_forms_do_not_move);
+  tcase_add_test(tests, full_matrices_of_many_modes_are_refused);
+  tcase_add_test(tests, static_states_of_too_many_modes_are_refused);
+  tcase_add_test(tests, static_states_that_do_not_exist_are_not_found);
+  tcase_add_test(tests, fluxes_want_facets_of_the_boundary);
+  tcase_add_test(tests, modes_are_as_many_as_unknowns);
   tcase_add_test(tests, questions_without_an_answer_are_refused);
   tcase_add_test(tests, static_states_keep_their_start_on_failure);
   tcase_add_test(tests, every_failing_allocation_is_survived);

@@ -308,6 +308,47 @@ START_TEST(callbacks_agree_with_differences_for_values_that_move)
 }
 END_TEST
 
+START_TEST(fields_explain_themselves)
+{
+  const dvi_density_part parts[] = {kinetic_part, elastic_part, sine_gordon_part};
+  const dvi_density_condition ends[] = {
+      {.part = "left", .kind = DVI_FIXED, .datum = moving, .rate = moving_rates},
+      {.part = "right", .kind = DVI_FIXED, .datum = line}};
+  density_field field = make_density(make_density_space("fem:degree=1,cells=8", 1, 0, 1, 0), parts,
+                                     3, ends, 2);
+  char text[600], start[12];
+  dvi_density_explain(field.density, text, sizeof text);
+  ck_assert_msg(strstr(text, "1 component of 9 functions: 7 coordinates, 1 value that moves, 1 "
+                             "fixed value\nmass: sparse, 19 entries\nvector potential: of the "
+                             "values that move\npotential 'quadratic': 1 part, 19 entries, "
+                             "frequencies up to ") == text &&
+                    strstr(text, "potential 'pendula': Hessian of 19 entries, gradients by ranges "
+                                 "that reach 1\n") != NULL,
+                "%s", text);
+  dvi_density_explain(field.density, start, sizeof start);
+  ck_assert_str_eq(start, "1 component");
+  end_density(&field);
+}
+END_TEST
+
+START_TEST(rates_are_lifted_with_those_that_move)
+{
+  const dvi_density_part parts[] = {kinetic_part, elastic_part};
+  const dvi_density_condition ends[] = {
+      {.part = "left", .kind = DVI_FIXED, .datum = moving, .rate = moving_rates},
+      {.part = "right", .kind = DVI_FIXED, .datum = line}};
+  density_field field = make_density(make_density_space("fem:degree=1,cells=3", 1, 0, 1, 0), parts,
+                                     2, ends, 2);
+  const double v[2] = {5, 7};
+  double rate[4];
+  ck_assert_int_eq(dvi_density_lift_rate(field.density, 0.3, v, rate), DVI_OK);
+  ck_assert_double_eq(rate[0], cos(0.3));
+  ck_assert(rate[1] == 5 && rate[2] == 7 && rate[3] == 0);
+  ck_assert_int_eq(dvi_density_lift_rate(field.density, 0, NULL, rate), DVI_BAD_ARGUMENT);
+  end_density(&field);
+}
+END_TEST
+
 START_TEST(lift_undoes_project)
 {
   const dvi_density_part parts[] = {kinetic_part, elastic_part};
@@ -337,5 +378,7 @@ SUITE(density_systems)
   tcase_add_test(tests, fluxes_and_robin_terms_pull_at_sides);
   tcase_add_test(tests, values_that_move_stay_in_the_lagrangian);
   tcase_add_test(tests, callbacks_agree_with_differences_for_values_that_move);
+  tcase_add_test(tests, fields_explain_themselves);
+  tcase_add_test(tests, rates_are_lifted_with_those_that_move);
   tcase_add_test(tests, lift_undoes_project);
 }

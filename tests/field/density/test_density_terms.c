@@ -59,8 +59,8 @@ START_TEST(loads_that_depend_on_time_have_rates)
 }
 END_TEST
 
-/* u'' = sin 3t (x - mean of x) in the mean: u_0'' = sin 3t for l = sin 3t u, whose solution from rest
- * is t/3 - sin(3t)/9. The mean of x on [0,2] is 1. */
+/* The mean of x on [0,2] is 1, so that the mean of u has u'' = sin 3 t, and from rest it is
+ * t/3 - sin(3 t)/9. */
 START_TEST(loads_that_depend_on_time_push)
 {
   const dvi_density_part parts[] = {kinetic_part, elastic_part, push_part};
@@ -204,6 +204,49 @@ START_TEST(fluxes_pull_at_triangles)
 }
 END_TEST
 
+static int unit_flux(int64_t count, double t, const double *x, double *datum, void *user)
+{
+  (void)t, (void)x, (void)user;
+  for (int64_t k = 0; k < count; k++) datum[k] = 1;
+  return 0;
+}
+
+/* The sum of the loads of a flux of 1 is the size of the boundary. */
+static double size_of_boundary(const char *kind, dvi_generator_options options)
+{
+  dvi_mesh *mesh = NULL;
+  dvi_space *space = NULL;
+  options.size = sizeof options;
+  ck_assert_int_eq(dvi_mesh_generate("kuhn", &options, &mesh), DVI_OK);
+  const dvi_space_options of = {.size = sizeof of, .kind = kind, .mesh = mesh};
+  ck_assert_msg(dvi_space_create(&of, &space) == DVI_OK, "%s", dvi_last_error());
+  dvi_mesh_destroy(&mesh);
+  const dvi_density_condition flux = {.part = "boundary", .datum = unit_flux};
+  density_field field = make_density(space, &kinetic_part, 1, &flux, 1);
+  dvi_system_terms terms;
+  double sum = 0;
+  ck_assert_int_eq(dvi_density_system_terms(field.density, &terms), DVI_OK);
+  ck_assert_int_eq(terms.potentials[0].gradient(0, field.q, field.p, terms.potentials[0].user), 0);
+  for (int64_t i = 0; i < field.n; i++) sum -= field.p[i];
+  end_density(&field);
+  return sum;
+}
+
+/* A unit square, a cylinder of it, and a unit cube. */
+START_TEST(fluxes_go_through_all_facets)
+{
+  const dvi_generator_options square = {.dimension = 2, .cells = {3, 4}},
+                              cylinder = {.dimension = 2, .cells = {4, 3}, .periodic = {1}},
+                              cube = {.dimension = 3, .cells = {2, 2, 2}};
+  static const char *const degrees[] = {"fem:degree=1", "fem:degree=2"};
+  for (int i = 0; i < 2; i++) {
+    ck_assert_double_eq_tol(size_of_boundary(degrees[i], square), 4, 1e-12);
+    ck_assert_double_eq_tol(size_of_boundary(degrees[i], cylinder), 2, 1e-12);
+    ck_assert_double_eq_tol(size_of_boundary(degrees[i], cube), 6, 1e-12);
+  }
+}
+END_TEST
+
 /* ---- memory ---- */
 
 static int moving(int64_t count, double t, const double *x, double *datum, void *user)
@@ -277,6 +320,7 @@ SUITE(density_terms)
   tcase_add_test(tests, components_may_share_a_mass);
   tcase_add_test(tests, triangles_hold_a_saddle);
   tcase_add_test(tests, fluxes_pull_at_triangles);
+  tcase_add_test(tests, fluxes_go_through_all_facets);
   tcase_add_test(tests, steps_take_no_memory);
   tcase_add_test(tests, rooms_are_not_shared);
 }

@@ -300,8 +300,55 @@ START_TEST(general_parts_agree_with_differences)
 }
 END_TEST
 
-/* With u' = sqrt(1 + u^2) u_t constant in x the motion is that of one particle: the energy
- * m u_t^2/2 is constant, and galerkin of degree 2 has order 4. */
+static int moving(int64_t count, double t, const double *x, double *datum, void *user)
+{
+  (void)user;
+  for (int64_t k = 0; k < count; k++) datum[k] = sin(t - x[k]);
+  return 0;
+}
+
+static int moving_rates(int64_t count, double t, const double *x, double *first, double *second,
+                        void *user)
+{
+  (void)user;
+  for (int64_t k = 0; k < count; k++) first[k] = cos(t - x[k]);
+  for (int64_t k = 0; k < count && second != NULL; k++) second[k] = -sin(t - x[k]);
+  return 0;
+}
+
+START_TEST(general_parts_go_with_values_that_move)
+{
+  static const char *const kinds[] = {"fem:degree=2,cells=5", "spline:degree=2,cells=7"};
+  const dvi_density_condition ends = {
+      .part = "boundary", .kind = DVI_FIXED, .datum = moving, .rate = moving_rates};
+  for (int i = 0; i < 2; i++) {
+    density_field field = make_density(make_density_space(kinds[i], 1, 0, 1, 0), &heavy_part, 1,
+                                       &ends, 1);
+    dvi_system_terms terms;
+    ck_assert_int_eq(dvi_density_system_terms(field.density, &terms), DVI_OK);
+    ck_assert(terms.lagrangian->rate != NULL && !terms.autonomous);
+    check_density(&field, 1e-6);
+    end_density(&field);
+  }
+}
+END_TEST
+
+/* At u = 0 the general part is that of a string of length pi, with the modes k^2. */
+START_TEST(general_parts_have_modes)
+{
+  const dvi_density_condition ends = {.part = "boundary", .kind = DVI_FIXED};
+  const dvi_modes_options three = {.size = sizeof three, .count = 3};
+  density_field field = make_density(make_density_space("fem:degree=4,cells=20", 1, 0, pi, 0),
+                                     &heavy_part, 1, &ends, 1);
+  double eigenvalue[3];
+  ck_assert_msg(dvi_density_modes(field.density, &three, NULL, eigenvalue, NULL) == DVI_OK, "%s",
+                dvi_last_error());
+  for (int k = 1; k <= 3; k++) ck_assert_double_eq_tol(eigenvalue[k - 1], k * k, 1e-8);
+  end_density(&field);
+}
+END_TEST
+
+/* galerkin of degree 2 has order 4 beside IDA. */
 START_TEST(general_parts_move_as_ida_says)
 {
   density_field field = make_density(make_density_space("fem:degree=2,cells=4", 1, 0, 2 * pi, 1),
@@ -415,6 +462,8 @@ SUITE(density_waves)
   tcase_add_test(tests, singular_static_problems_are_refused);
   tcase_add_test(tests, breathers_have_the_errors_of_imex_steps);
   tcase_add_test(tests, general_parts_agree_with_differences);
+  tcase_add_test(tests, general_parts_go_with_values_that_move);
+  tcase_add_test(tests, general_parts_have_modes);
   tcase_add_test(tests, general_parts_move_as_ida_says);
   tcase_add_test(tests, one_forms_of_pairs_agree_with_differences);
 }

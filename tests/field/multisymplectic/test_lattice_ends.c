@@ -220,11 +220,117 @@ START_TEST(densities_may_be_nonlinear_in_the_rates)
   }
 }
 END_TEST
+/* u_tt - u_xx = f with f = -3 sin x cos 2t has the solution sin x cos 2t. */
+static int source(int count, double t, const double *x, const double *z, double *l, double *l_z,
+                  double *l_zz, void *user)
+{
+  (void)user;
+  for (int i = 0; i < count; i++) {
+    const double f = -3 * sin(x[i]) * cos(2 * t);
+    if (l != NULL) l[i] = f * z[i];
+    if (l_z != NULL) l_z[i] = f;
+    if (l_zz != NULL) l_zz[i] = 0;
+  }
+  return 0;
+}
+
+static double driven(double t, const double *x, const void *of)
+{
+  (void)of;
+  return sin(x[0]) * cos(2 * t);
+}
+
+START_TEST(densities_may_depend_on_time_and_place)
+{
+  static const dvi_jet value = {.component = 0};
+  double before = 0;
+  for (int cells = 41; cells <= 330; cells *= 2) {
+    lattice w = {.cells = cells + 1 - cells % 2,
+                 .space = _i / 6.0,
+                 .time = _i * .25,
+                 .step = .7 * 2 * pi / cells};
+    lattice_terms(&w);
+    w.part[2] = (dvi_density_part){.kind = DVI_DENSITY_QUADRATIC,
+                                   .variable = &value,
+                                   .variables = 1,
+                                   .density = source,
+                                   .depends_on_time = 1};
+    w.terms.parts = 3;
+    dvi_march *march = NULL;
+    ck_assert_int_eq(dvi_multisymplectic_create(&w.terms, &march), DVI_OK);
+    lattice_start(march, &w, driven, NULL);
+    advance(march, cells * w.step); /* at a level */
+    const double error = lattice_distance(march, &w, driven, NULL);
+    if (cells > 100) ck_assert_double_eq_tol(log2(before / error), 2, 0.2);
+    before = error;
+    dvi_march_destroy(&march);
+  }
+}
+END_TEST
+
+/* l = (u_t + u_x/2)^2/2 - u_x^2/2, a wave in a frame that moves, with z = (u_t, u_x). Its matrix is
+ * not symmetric. */
+static int moving_frame(int count, double t, const double *x, const double *z, double *l,
+                        double *l_z, double *l_zz, void *user)
+{
+  (void)t, (void)x, (void)user;
+  for (int i = 0; i < count; i++) {
+    const double w = z[count + i], v = z[i] + w / 2;
+    if (l != NULL) l[i] = v * v / 2 - w * w / 2;
+    if (l_z != NULL) l_z[i] = v, l_z[count + i] = v / 2 - w;
+    if (l_zz != NULL) l_zz[i] = 1, l_zz[count + i] = .5, l_zz[2 * count + i] = -.75;
+  }
+  return 0;
+}
+
+static double slow_wave(double t, const double *x, const void *of)
+{
+  (void)of;
+  return exp(sin(x[0] - 1.5 * t));
+}
+
+START_TEST(densities_may_mix_rates_and_derivatives)
+{
+  static const dvi_jet slopes[] = {{.rate = 1}, {.order = {1, 0, 0}}};
+  static const dvi_density_part part = {
+      .kind = DVI_DENSITY_GENERAL, .variable = slopes, .variables = 2, .density = moving_frame};
+  static const double weight[] = {0, 1. / 6, .25};
+  double before = 0;
+  for (int cells = 41; cells <= 330; cells *= 2) {
+    lattice w = {.cells = cells + 1 - cells % 2,
+                 .space = weight[_i],
+                 .time = weight[_i],
+                 .step = .4 * 2 * pi / cells};
+    lattice_terms(&w);
+    w.terms.part = &part;
+    w.terms.parts = 1;
+    dvi_march *march = NULL;
+    dvi_law law[DVI_LAWS_MAX];
+    int count;
+    double energy, later;
+    ck_assert_int_eq(dvi_multisymplectic_create(&w.terms, &march), DVI_OK);
+    lattice_start(march, &w, slow_wave, NULL);
+    ck_assert_int_eq(dvi_march_observe(march, 0, &energy), DVI_OK);
+    advance(march, 2);
+    ck_assert_int_eq(dvi_march_observe(march, 0, &later), DVI_OK);
+    ck_assert_double_eq_tol(energy, later, 1e-12); /* roundings */
+    const double error = lattice_distance(march, &w, slow_wave, NULL);
+    if (cells > 100) ck_assert_double_eq_tol(log2(before / error), 2, 0.2);
+    before = error;
+    dvi_march_destroy(&march);
+    ck_assert_int_eq(dvi_multisymplectic_laws(&w.terms, NULL, 8, 5, law, &count), DVI_OK);
+    for (int i = 0; i < count; i++) ck_assert_double_lt(law[i].error, 1e-13);
+  }
+}
+END_TEST
+
 SUITE(lattice_ends)
 {
   tcase_add_loop_test(tests, walls_may_move, 0, 4);
   tcase_add_loop_test(tests, fluxes_may_move, 0, 3);
   tcase_add_test(tests, springs_hold_the_boundary);
   tcase_add_loop_test(tests, cells_may_be_unequal, 0, 2);
+  tcase_add_loop_test(tests, densities_may_depend_on_time_and_place, 0, 2);
+  tcase_add_loop_test(tests, densities_may_mix_rates_and_derivatives, 0, 3);
   tcase_add_loop_test(tests, densities_may_be_nonlinear_in_the_rates, 0, 3);
 }

@@ -31,20 +31,25 @@ static double most_change(dvi_march *march, double step, int from, int to, doubl
   return most;
 }
 
+static lattice coarse(double space, double time)
+{
+  return (lattice){.cells = 81,
+                   .from = -20,
+                   .to = 20,
+                   .space = space,
+                   .time = time,
+                   .levels = space < time,
+                   .V = "sine",
+                   .step = .25};
+}
+
 /* A breather of sine-Gordon with steps that are half of a coarse cell: the energy swings by h^2,
  * and no more at the end than at the beginning. */
-START_TEST(energies_swing_and_do_not_drift)
+START_TEST(energies_of_implicit_steps_swing_and_do_not_drift)
 {
-  static const double weight[][2] = {{0, 0}, {1. / 6, 1. / 6}, {.25, .25}, {1. / 6, 1. / 4}};
-  const int steps = repeats(_i == 0 ? 1000000 : 100000);
-  lattice w = {.cells = 81,
-               .from = -20,
-               .to = 20,
-               .space = weight[_i][0],
-               .time = weight[_i][1],
-               .levels = _i == 3,
-               .V = "sine",
-               .step = .25};
+  static const double weight[][2] = {{1. / 6, 1. / 6}, {.25, .25}, {1. / 6, 1. / 4}};
+  const int steps = repeats(100000);
+  lattice w = coarse(weight[_i][0], weight[_i][1]);
   dvi_march *march = lattice_march(&w);
   lattice_start(march, &w, breather, NULL);
   const double start = energy_of(march), first = most_change(march, w.step, 0, steps / 10, start),
@@ -55,7 +60,23 @@ START_TEST(energies_swing_and_do_not_drift)
 }
 END_TEST
 
+/* Explicit ones on this lattice let the breather lose a tenth of its height to short waves in a
+ * million steps. What is observed differs from what is conserved by h^2 times a function of the
+ * state, which is a few parts in a hundred here. */
+START_TEST(energies_of_explicit_steps_stay_in_a_band)
+{
+  const int steps = repeats(1000000);
+  lattice w = coarse(0, 0);
+  dvi_march *march = lattice_march(&w);
+  lattice_start(march, &w, breather, NULL);
+  const double start = energy_of(march);
+  ck_assert_double_lt(most_change(march, w.step, 0, steps, start), .04 * start);
+  dvi_march_destroy(&march);
+}
+END_TEST
+
 SUITE(lattice_long)
 {
-  tcase_add_loop_test(tests, energies_swing_and_do_not_drift, 0, 4);
+  tcase_add_loop_test(tests, energies_of_implicit_steps_swing_and_do_not_drift, 0, 3);
+  tcase_add_test(tests, energies_of_explicit_steps_stay_in_a_band);
 }

@@ -210,6 +210,13 @@ static int undefined(int64_t count, double t, const double *x, double *V, void *
   return 0;
 }
 
+static int enormous(int64_t count, double t, const double *x, double *V, void *user)
+{
+  (void)t, (void)user;
+  for (int64_t i = 0; i < count; i++) V[i] = x[i] < 0 ? -1e200 : 0;
+  return 0;
+}
+
 static int late(int64_t count, double t, const double *x, double *V, void *user)
 {
   (void)x, (void)user;
@@ -250,8 +257,9 @@ START_TEST(terms_are_refused_with_a_reason)
   check_terms(fem, 0, (terms){.size = 1}, DVI_BAD_ARGUMENT, "terms.size");
   check_terms(fem, 0, (terms){.hbar = -1}, DVI_BAD_ARGUMENT, "hbar = -1");
   check_terms(fem, 0, (terms){.mass = NAN}, DVI_BAD_ARGUMENT, "mass");
-  check_terms(fem, 0, (terms){.interaction = INFINITY}, DVI_BAD_ARGUMENT, "interaction is inf");
+  check_terms(fem, 0, (terms){.interaction = INFINITY}, DVI_NOT_FINITE, "interaction is inf");
   check_terms(fem, 0, (terms){.potential = undefined}, DVI_NOT_FINITE, "at (-0.9");
+  check_terms(fem, 0, (terms){.potential = enormous}, DVI_NOT_FINITE, "is -1e+200 at (-0.9");
   check_terms(fem, 0, (terms){.potential = failing}, DVI_CALLBACK_FAILED, "failed with 7");
   check_terms(fem, 0, (terms){.interaction_at = bad_interaction}, DVI_NOT_FINITE, "interaction");
   check_terms(fem, 0, (terms){.fixed = "left, top"}, DVI_BAD_ARGUMENT, "\"top\"");
@@ -326,7 +334,68 @@ START_TEST(stationary_states_are_refused_with_a_reason)
 }
 END_TEST
 
+/* ---- words ---- */
+
+START_TEST(equations_are_explained)
+{
+  char text[400];
+  quantum q = make_oscillator(1), circle = quantum_on_line("fourier:modes=3", 0, 1, 1, NULL, 0);
+  dvi_schroedinger_explain(q.equation, text, sizeof text);
+  ck_assert(strstr(text, "99 free of 101 functions, 120 points") != NULL);
+  ck_assert(strstr(text, "a potential of x, an interaction") != NULL);
+  ck_assert(strstr(text, "sparse matrices with ") != NULL);
+  dvi_schroedinger_explain(circle.equation, text, sizeof text);
+  ck_assert(strstr(text, "no potential, no interaction\ndiagonal kinetic energy") != NULL);
+  dvi_schroedinger_explain(circle.equation, text, 9);
+  ck_assert_str_eq(text, "hbar = 1");
+  free_quantum(&q);
+  free_quantum(&circle);
+}
+END_TEST
+
+START_TEST(only_resonances_bound_the_step)
+{
+  quantum q = quantum_on_line("fourier:modes=8,points=17", 0, 6.283185307179586, 1, NULL, 1);
+  dvi_march *split = quantum_march(&q, "split", 0.05), *gauss = quantum_march(&q, "gauss", 0.05);
+  dvi_march_facts facts;
+  dvi_march_facts_of(split, &facts);
+  ck_assert(fabs(facts.bound - 3.141592653589793 / 32) < 1e-14);
+  dvi_march_facts_of(gauss, &facts);
+  ck_assert(isinf(facts.bound));
+  dvi_march_destroy(&split);
+  dvi_march_destroy(&gauss);
+  free_quantum(&q);
+}
+END_TEST
+
 /* ---- memory ---- */
+
+static void check_no_allocation(const quantum *q, const char *method)
+{
+  dvi_march *march = started(q, method);
+  advance_march(march, 0.05);
+  const long before = dvi__allocation_count();
+  advance_march(march, 0.3);
+  ck_assert(dvi__allocation_count() == before);
+  dvi_march_destroy(&march);
+}
+
+START_TEST(steps_take_no_memory)
+{
+  const dvi_schroedinger_terms moving = {.potential = late, .depends_on_time = 1};
+  quantum still = make_oscillator(1),
+          moved = quantum_with(space_on_line("fem:degree=3,cells=10", -5, 5, 0), &moving),
+          circle = quantum_on_line("fourier:modes=20,points=41", -8, 8, 1, harmonic, 1);
+  for (int i = 0; i < METHODS; i++) {
+    check_no_allocation(&still, methods[i]);
+    check_no_allocation(&circle, methods[i]);
+  }
+  check_no_allocation(&moved, "midpoint");
+  free_quantum(&still);
+  free_quantum(&moved);
+  free_quantum(&circle);
+}
+END_TEST
 
 static dvi_status make_all(dvi_space *space, const char *method)
 {
@@ -381,5 +450,8 @@ SUITE(schroedinger_march)
   tcase_add_test(tests, steps_that_do_not_converge_leave_psi);
   tcase_add_test(tests, starts_are_psi_alone_and_finite);
   tcase_add_test(tests, stationary_states_are_refused_with_a_reason);
+  tcase_add_test(tests, equations_are_explained);
+  tcase_add_test(tests, only_resonances_bound_the_step);
+  tcase_add_test(tests, steps_take_no_memory);
   tcase_add_test(tests, every_lack_of_memory_is_reported);
 }

@@ -7,6 +7,7 @@
 #include "support/field/function_spaces.h"
 #include "support/field/marches.h"
 #include "support/field/schroedinger.h"
+#include "support/meshes.h"
 #include "support/suite.h"
 
 static const double pi = 3.14159265358979323846;
@@ -151,6 +152,56 @@ START_TEST(many_fourier_modes_are_found_without_a_matrix)
 }
 END_TEST
 
+/* A step of 1e16 leaves one digit of energies near 1. */
+static int cliff(int64_t count, double t, const double *x, double *V, void *user)
+{
+  (void)t, (void)user;
+  for (int64_t i = 0; i < count; i++) V[i] = x[i] > 0 ? 1e16 : 0;
+  return 0;
+}
+
+START_TEST(states_that_roundings_hide_are_not_given)
+{
+  quantum q = quantum_on_line("fourier:modes=16", -5, 5, 1, cliff, 0);
+  double energy;
+  ck_assert(dvi_schroedinger_modes(q.equation, 1, &energy, NULL) == DVI_NOT_CONVERGED);
+  check_words("is not resolved");
+  free_quantum(&q);
+}
+END_TEST
+
+/* The lowest state has no energy at all. */
+START_TEST(free_particles_on_a_circle_are_found_by_both_ways)
+{
+  check_modes(quantum_on_line("fourier:modes=20", 0, 2 * pi, 1, NULL, 0), 3,
+              (double[]){0, 0.5, 0.5}, 1e-14);
+  check_modes(quantum_on_line("fourier:modes=250", 0, 2 * pi, 1, NULL, 0), 3,
+              (double[]){0, 0.5, 0.5}, 1e-14);
+}
+END_TEST
+
+/* ---- a mesh ---- */
+
+/* A square box of side 1 has pi^2 (k^2 + l^2)/2. Quadratic triangles are of order 4. */
+START_TEST(triangles_have_the_energies_of_a_box)
+{
+  double before = 0;
+  for (int cells = 4; cells <= 16; cells *= 2) {
+    dvi_mesh *mesh = jittered_mesh(2, 2, cells, 0, 1);
+    const dvi_schroedinger_terms terms = {0};
+    quantum q = quantum_with(space_on_mesh("fem:degree=2", mesh), &terms);
+    double energy;
+    ck_assert(dvi_schroedinger_modes(q.equation, 1, &energy, NULL) == DVI_OK);
+    const double error = energy - pi * pi;
+    ck_assert(error > 0);
+    if (before > 0) ck_assert(fabs(log2(before / error) - 4) < 0.2);
+    before = error;
+    free_quantum(&q);
+    dvi_mesh_destroy(&mesh);
+  }
+}
+END_TEST
+
 /* ---- radius ---- */
 
 static quantum on_radius(int radial, potential_of_points *V)
@@ -266,6 +317,37 @@ START_TEST(condensates_in_two_dimensions_have_their_digits)
 }
 END_TEST
 
+static int tenfold(int64_t count, const double *x, double *beta, void *user)
+{
+  (void)x, (void)user;
+  for (int64_t i = 0; i < count; i++) beta[i] = 10;
+  return 0;
+}
+
+/* H(psi) psi = mu M psi makes psi exp(-i mu t/hbar). A step of order 8 has no other error here. */
+START_TEST(condensates_turn_by_their_chemical_potential)
+{
+  const dvi_schroedinger_terms terms = {.potential = harmonic, .interaction_at = tenfold};
+  quantum q = quantum_with(space_on_line("fem:degree=8,cells=20", -9, 9, 0), &terms);
+  double mu, *psi = calloc(2 * (size_t)q.functions, sizeof *psi);
+  ck_assert(dvi_schroedinger_ground(q.equation, 1, &mu, NULL, psi) == DVI_OK);
+  ck_assert(fabs(mu - condensates[0].mu) < 1e-9);
+  dvi_march *march = quantum_march(&q, "gauss:stages=4", 0.05);
+  const dvi_march_state start = {.size = sizeof start, .A = psi};
+  ck_assert(dvi_march_start(march, &start) == DVI_OK);
+  advance_march(march, 1);
+  double *now = sample_march(march, DVI_FORM_A);
+  for (int64_t i = 0; i < q.functions; i++) {
+    ck_assert(fabs(now[i] - cos(mu) * psi[i]) < 1e-11);
+    ck_assert(fabs(now[q.functions + i] + sin(mu) * psi[i]) < 1e-11);
+  }
+  free(now);
+  free(psi);
+  dvi_march_destroy(&march);
+  free_quantum(&q);
+}
+END_TEST
+
 /* norm beta alone counts: psi/sqrt(norm) has the interaction norm beta. */
 START_TEST(norm_scales_the_interaction)
 {
@@ -294,11 +376,15 @@ SUITE(stationary)
   tcase_add_test(tests, fourier_converges_faster_than_any_power);
   tcase_add_test(tests, elements_converge_with_order_two_k);
   tcase_add_test(tests, many_fourier_modes_are_found_without_a_matrix);
+  tcase_add_test(tests, states_that_roundings_hide_are_not_given);
+  tcase_add_test(tests, free_particles_on_a_circle_are_found_by_both_ways);
+  tcase_add_test(tests, triangles_have_the_energies_of_a_box);
   tcase_add_test(tests, oscillators_of_a_radius_have_their_energies);
   tcase_add_test(tests, hydrogen_has_its_energies_in_both_forms);
   tcase_add_test(tests, states_are_orthonormal_and_stay_up_to_a_phase);
   tcase_add_test(tests, condensates_have_the_digits_of_an_independent_program);
   tcase_add_test(tests, condensates_in_two_dimensions_have_their_digits);
+  tcase_add_test(tests, condensates_turn_by_their_chemical_potential);
   tcase_add_test(tests, norm_scales_the_interaction);
   tcase_add_test(tests, attraction_makes_a_soliton);
 }

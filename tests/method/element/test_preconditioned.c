@@ -215,7 +215,8 @@ static void best_again(void)
 START_TEST(every_instruction_set_finds_the_same_bits)
 {
   static const char *const methods[] = {"midpoint", "galerkin:degree=3", "galerkin:degree=8",
-                                        "galerkin:degree=12,quadrature=lobatto"};
+                                        "galerkin:degree=12,quadrature=lobatto",
+                                        "composition:order=6,base=galerkin,degree=2"};
   double q[3][25];
   sine_gordon waves;
   sine_gordon_create(12, 32, 1, 1, &waves);
@@ -250,6 +251,27 @@ START_TEST(a_restored_run_finds_the_same_bits)
   dvi_integrator_destroy(&run);
   dvi_integrator_destroy(&other);
   sine_gordon_destroy(&waves);
+}
+END_TEST
+
+/* The inverses of all of its lengths are kept, and those of one are never taken for another's.
+ * Else the parts would not converge in the iterations that they take alone, or at all. */
+START_TEST(a_composition_keeps_the_inverses_of_its_lengths)
+{
+  problem *chain = create_problem("fpu", NULL);
+  dvi_integrator *iterated = start_integrator(chain, "composition:order=4,base=midpoint"),
+                 *newton = start_integrator(chain, "composition:order=4,base=midpoint,"
+                                                   "solver=newton");
+  advance(iterated, 0.1, 20);
+  advance(newton, 0.1, 20);
+  const dvi_counters counters = read_counters(iterated);
+  ck_assert_int_eq(counters.jacobians, 0);
+  ck_assert_int_le(counters.residuals, 12 * counters.fixed_points);
+  ck_assert_double_le(distance(chain->nq, dvi_integrator_q(iterated), dvi_integrator_q(newton)),
+                      1e-13);
+  dvi_integrator_destroy(&iterated);
+  dvi_integrator_destroy(&newton);
+  problem_destroy(&chain);
 }
 END_TEST
 
@@ -327,8 +349,9 @@ SUITE(preconditioned)
   tcase_add_test(tests, linear_waves_take_the_fewest_iterations);
   tcase_add_test(tests, the_energy_of_waves_does_not_drift);
   tcase_add_checked_fixture(tests, NULL, best_again);
-  tcase_add_loop_test(tests, every_instruction_set_finds_the_same_bits, 0, 4);
+  tcase_add_loop_test(tests, every_instruction_set_finds_the_same_bits, 0, 5);
   tcase_add_test(tests, a_restored_run_finds_the_same_bits);
+  tcase_add_test(tests, a_composition_keeps_the_inverses_of_its_lengths);
   tcase_add_test(tests, steps_take_no_memory);
   tcase_add_test(tests, members_of_an_ensemble_keep_their_own_stiffness);
   tcase_add_test(tests, a_stiff_pull_goes_to_the_next_rung);

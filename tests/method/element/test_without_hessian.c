@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "support/heap.h"
 #include "support/prepared.h"
 #include "support/runs.h"
 #include "support/suite.h"
@@ -113,6 +114,22 @@ START_TEST(the_ladder_is_explained)
 }
 END_TEST
 
+/* A pattern of 4001^2 entries alone would take 64 MB. */
+START_TEST(many_modes_take_memory_in_proportion)
+{
+  sine_gordon many;
+  const long before = heap_bytes();
+  sine_gordon_create(2000, 4096, 1, 1, &many);
+  dvi_integrator *run = create_integrator(many.system, "galerkin:degree=2");
+  ck_assert_int_eq(dvi_integrator_start(run, 0, many.q, many.p), DVI_OK);
+  advance(run, 0.05, 2);
+  ck_assert_int_eq(read_counters(run).fixed_points, 2);
+  ck_assert_int_lt(heap_bytes() - before, 8000000);
+  dvi_integrator_destroy(&run);
+  sine_gordon_destroy(&many);
+}
+END_TEST
+
 START_TEST(the_check_leaves_the_hessian_out)
 {
   dvi_derivative_check check;
@@ -130,5 +147,6 @@ SUITE(without_hessian)
                       sizeof solvers / sizeof *solvers);
   tcase_add_test(tests, a_step_too_large_names_a_smaller_one);
   tcase_add_test(tests, the_ladder_is_explained);
+  tcase_add_test(tests, many_modes_take_memory_in_proportion);
   tcase_add_test(tests, the_check_leaves_the_hessian_out);
 }

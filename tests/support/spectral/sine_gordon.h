@@ -11,7 +11,7 @@
 
 #include "num/fft/fft.h"
 
-enum { SINE_GORDON_MODES = 64 };
+enum { SINE_GORDON_MODES = 2000 };
 
 typedef struct sine_gordon {
   dvi_system *system;

@@ -189,9 +189,9 @@ void dvi_density_destroy(dvi_density **density)
   for (int p = 0; p < d->parts; p++) dvi__density_part_clear(d->part + p);
   for (int i = 0; i < d->movers; i++) dvi__release(d->mover[i].x);
   void *const arrays[] = {
-      d->unknown,  d->number,     d->fixed,           d->site,           d->mover,
-      d->part,     d->gauge,      d->potential,       d->load,           d->potential_term,
-      d->no_start, d->mass_start, d->stiffness_start, d->gradients_start};
+      d->unknown,    d->number,          d->fixed,          d->site, d->mover,          d->constant,
+      d->part,       d->gauge,           d->potential,      d->load, d->potential_term, d->no_start,
+      d->mass_start, d->stiffness_start, d->gradients_start};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) dvi__release(arrays[i]);
   dvi__csr_clear(&d->mass);
   dvi__csr_clear(&d->stiffness);

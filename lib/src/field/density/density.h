@@ -139,7 +139,8 @@ struct dvi_density {
   int parts, declared;
   int count[DVI_DENSITY_GENERAL + 1]; /* parts of each kind */
   dvi__rooms *rooms;
-  int *gauge; /* [components] 1 if a coefficient is left out, because constants do not move */
+  double *constant; /* [functions] coefficients of 1, of a field of first order */
+  int *gauge;       /* [components] 1 if a coefficient is left out, because constants do not move */
 
   dvi__integral kinetic, quadratic, one_form, lagrangian;
   dvi__integral *potential; /* [count of potentials], and the rest of quadratic parts behind */
@@ -237,6 +238,9 @@ int64_t dvi__density_room(const dvi_density *density);
 
 /* Make a matrix without values whose rows are the columns of a pattern. */
 dvi_status dvi__matrix_of_pattern(const dvi__pattern *pattern, dvi__csr *matrix);
+
+/* Take the coordinates q from coefficients U [places], which may be NULL for 0. */
+void dvi__density_take(const dvi_density *density, const double *U, double *q);
 
 /* Make the mass, the stiffness, and the load. */
 dvi_status dvi__density_make_mass(dvi_density *density);

@@ -7,10 +7,14 @@ static void write_coordinates(dvi__note *p, const dvi_density *d)
   dvi__note_add(p, "%d component%s of %lld functions: %lld coordinates", d->components,
                 d->components == 1 ? "" : "s", (long long)d->functions, (long long)d->unknowns);
   const int64_t rest = d->places - d->unknowns - d->moving;
-  if (d->moving > 0) dvi__note_add(p, ", %lld values that move", (long long)d->moving);
+  if (d->moving > 0)
+    dvi__note_add(p, ", %lld value%s", (long long)d->moving,
+                  d->moving == 1 ? " that moves" : "s that move");
   int64_t gauges = 0;
   for (int c = 0; c < d->components; c++) gauges += d->gauge[c];
-  if (rest > gauges) dvi__note_add(p, ", %lld fixed values", (long long)(rest - gauges));
+  if (rest > gauges)
+    dvi__note_add(p, ", %lld fixed value%s", (long long)(rest - gauges),
+                  rest - gauges == 1 ? "" : "s");
   if (gauges > 0)
     dvi__note_add(p, ", %lld constant%s left out", (long long)gauges, gauges == 1 ? "" : "s");
   dvi__note_add(p, "\n");

@@ -7,6 +7,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "field/density/density.h"
+#include "field/mesh/mesh.h"
 #include "field/space/kind.h"
 
 enum { FACET_POINTS = 4 /* of Gauss along an edge, and along two directions of a triangle */ };
@@ -128,22 +129,23 @@ static dvi_status make_sides(const dvi_density *density, const char *name, dvi__
 
 /* ---- facets of meshes ---- */
 
-/* Place points on an edge or a triangle with corners y[0], y[1], y[2], from point `first` on. */
-static void fill_facet(const double *const y[3], int n, int64_t first, const double *s,
+/* Place points on an edge or a triangle, from point `first` on. */
+static void fill_facet(const dvi_mesh *mesh, const int *corner, int64_t first, const double *s,
                        const double *w, dvi__density_part *part)
 {
-  const int points = n == 2 ? FACET_POINTS : FACET_POINTS * FACET_POINTS;
-  double *x = part->own, *weight = part->own + n * part->points, size = 0, along[2][3] = {{0}};
-  for (int b = 0; b + 1 < n; b++)
-    for (int d = 0; d < n; d++) along[b][d] = y[b + 1][d] - y[0][d];
+  const int n = mesh->n, points = n == 2 ? FACET_POINTS : FACET_POINTS * FACET_POINTS;
+  const double *from = mesh->point + (int64_t)corner[0] * n;
+  double *x = part->own, *weight = part->own + n * part->points, along[2][DVI_AXES_MAX] = {{0}};
+  for (int b = 0; b + 1 < n; b++) dvi__mesh_difference(mesh, corner[0], corner[b + 1], along[b]);
   const double *a = along[0], *b = along[1];
-  size = n == 2 ? hypot(a[0], a[1])
-                : sqrt(pow(a[1] * b[2] - a[2] * b[1], 2) + pow(a[2] * b[0] - a[0] * b[2], 2) +
-                       pow(a[0] * b[1] - a[1] * b[0], 2));
+  const double size = n == 2 ? hypot(a[0], a[1])
+                             : sqrt(pow(a[1] * b[2] - a[2] * b[1], 2) +
+                                    pow(a[2] * b[0] - a[0] * b[2], 2) +
+                                    pow(a[0] * b[1] - a[1] * b[0], 2));
   for (int i = 0; i < points; i++) {
     const int k = i % FACET_POINTS, m = i / FACET_POINTS;
     const double u = s[k], v = n == 2 ? 0 : s[m] * (1 - u);
-    for (int d = 0; d < n; d++) x[d * part->points + first + i] = y[0][d] + u * a[d] + v * b[d];
+    for (int d = 0; d < n; d++) x[d * part->points + first + i] = from[d] + u * a[d] + v * b[d];
     weight[first + i] = size * w[k] * (n == 2 ? 1 : w[m] * (1 - u));
   }
 }
@@ -172,7 +174,6 @@ static dvi_status make_facets(const dvi_density *density, const char *name, dvi_
   const int *facet = dvi_mesh_part_cells(mesh, name, n - 1, &count),
             *boundary = dvi_mesh_part_cells(mesh, "boundary", n - 1, &outer),
             *vertex = dvi_mesh_vertices(mesh, n - 1, &width);
-  const double *point = dvi_mesh_points(mesh);
   DVI_TRY(dvi_quadrature(DVI_GAUSS, FACET_POINTS, s, w));
   for (int64_t i = 0; i < count; i++) points += each * has_facet(boundary, outer, facet[i]);
   if (points == 0)
@@ -181,11 +182,8 @@ static dvi_status make_facets(const dvi_density *density, const char *name, dvi_
                      name);
   DVI_TRY(allocate_points(density, points, part));
   for (int64_t i = 0; i < count; i++) {
-    const int *corner = vertex + (int64_t)facet[i] * width;
-    const double *y[3] = {0};
     if (!has_facet(boundary, outer, facet[i])) continue;
-    for (int j = 0; j < n; j++) y[j] = point + (int64_t)corner[j] * n;
-    fill_facet(y, n, first, s, w, part);
+    fill_facet(mesh, vertex + (int64_t)facet[i] * width, first, s, w, part);
     first += each;
   }
   return DVI_OK;

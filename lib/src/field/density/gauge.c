@@ -63,15 +63,15 @@ static double largest(int64_t n, const double *x)
 
 /* Tell if constants w of a component are in the kernel of Omega at a state, where alpha is
  * unchanged along w. room has 4 n numbers. */
-static dvi_status is_in_kernel(const dvi_density *density, int component, const double *constant,
-                               double *room, int *answer)
+static dvi_status is_in_kernel(const dvi_density *density, int component, double *room, int *answer)
 {
   const int64_t n = density->unknowns;
   double *q = room, *w = q + n, *first = w + n, *second = first + n;
   (void)dvi__fill_random(n, 11, q);
   for (int64_t i = 0; i < n; i++) {
     const int64_t place = density->unknown[i];
-    w[i] = place / density->functions == component ? constant[place % density->functions] : 0;
+    w[i] = place / density->functions == component ? density->constant[place % density->functions]
+                                                   : 0;
   }
   DVI_TRY(differentiate(density, q, w, first));
   const double of_gradient = largest(n, first);
@@ -87,11 +87,10 @@ static dvi_status is_in_kernel(const dvi_density *density, int component, const 
 
 static dvi_status find_gauge(dvi_density *density, double *room, int *gauges)
 {
-  double *constant = room + 4 * density->unknowns;
-  DVI_TRY(dvi_space_interpolate(density->space, one, NULL, constant));
+  DVI_TRY(dvi_space_interpolate(density->space, one, NULL, density->constant));
   for (int c = 0; c < density->components; c++) {
     if (!has_no_value(density, c)) continue;
-    DVI_TRY(is_in_kernel(density, c, constant, room, density->gauge + c));
+    DVI_TRY(is_in_kernel(density, c, room, density->gauge + c));
     *gauges += density->gauge[c];
   }
   return DVI_OK;
@@ -108,8 +107,12 @@ static dvi_status leave_out(dvi_density *density)
 dvi_status dvi__density_fix_gauge(dvi_density *density)
 {
   int gauges = 0;
-  double *room = DVI_NEW(double, 4 * density->unknowns + density->functions);
-  if (room == NULL) return no_memory();
+  double *room = DVI_NEW(double, 4 * density->unknowns);
+  density->constant = DVI_NEW(double, density->functions);
+  if (room == NULL || density->constant == NULL) {
+    dvi__release(room);
+    return no_memory();
+  }
   dvi_status status = find_gauge(density, room, &gauges);
   dvi__release(room);
   if (status != DVI_OK || gauges == 0) return status;

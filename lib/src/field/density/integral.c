@@ -115,7 +115,7 @@ static dvi_status make_pattern(const dvi__integral *integral, dvi__second second
                                dvi__pattern *pattern)
 {
   const int n = (int)integral->density->unknowns;
-  int64_t *first = DVI_NEW(int64_t, 2 * ((int64_t)n + 1)), *next = first + n + 1;
+  int64_t *first = DVI_NEW(int64_t, 2 * ((int64_t)n + 1));
   pattern->rows = pattern->columns = n;
   pattern->start = DVI_NEW(int, n + 1);
   if (first == NULL || pattern->start == NULL) {
@@ -124,6 +124,7 @@ static dvi_status make_pattern(const dvi__integral *integral, dvi__second second
   }
   visit(integral, second, first + 1, NULL);
   for (int j = 0; j < n; j++) first[j + 1] += first[j];
+  int64_t *next = first + n + 1;
   memcpy(next, first, (size_t)n * sizeof *next);
   pattern->row = DVI_NEW(int, first[n]);
   dvi_status status = pattern->row != NULL ? DVI_OK : no_memory();

@@ -146,7 +146,7 @@ static dvi_status check_part(const dvi_density *density, dvi__density_part *part
   for (int i = 0; i < PLACES && status == DVI_OK; i++) {
     s.point = i * (part->points - 1) / (PLACES - 1);
     status = try_point(&s);
-    if (!has_constant_second(&s)) part->is_constant = 0;
+    if (status == DVI_OK && !has_constant_second(&s)) part->is_constant = 0;
   }
   dvi__release(room);
   return status;

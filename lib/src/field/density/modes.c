@@ -40,7 +40,7 @@ static dvi_status find(const dvi_density *density, const dvi_modes_options *opti
 {
   double *q = room, *vector = room + density->unknowns;
   dvi__csr K = {0}, M = {0};
-  for (int64_t i = 0; i < density->unknowns; i++) q[i] = U != NULL ? U[density->unknown[i]] : 0;
+  dvi__density_take(density, U, q);
   dvi_status status = dvi__density_hessian(density, q, &K);
   if (status == DVI_OK) status = make_mass(density, q, &M);
   if (status == DVI_OK) {

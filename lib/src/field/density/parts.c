@@ -37,7 +37,7 @@ static dvi_status check_variables(const dvi_density *density, const dvi_density_
 
 static dvi_status check_pairs(const dvi_density_part *part, const char *name)
 {
-  if (part->pairs < 0 || (part->pairs > 0) != (part->pair != NULL))
+  if (part->pairs < 0 || (part->pairs > 0 && part->pair == NULL))
     return dvi__fail(DVI_BAD_ARGUMENT,
                      "density: part '%s' has %d pairs: give them with their count, or none", name,
                      part->pairs);

@@ -36,10 +36,16 @@ dvi_status dvi_density_lift_rate(const dvi_density *density, double t, const dou
   return dvi__density_refuse(failed, "the rate of a value that moves");
 }
 
-static void take(const dvi_density *density, const double *U, double *q)
+/* A component with a gauge loses as much of a constant as makes its first coefficient 0. */
+void dvi__density_take(const dvi_density *density, const double *U, double *q)
 {
-  for (int64_t i = 0; i < density->unknowns && q != NULL; i++)
-    q[i] = U != NULL ? U[density->unknown[i]] : 0;
+  for (int64_t i = 0; i < density->unknowns; i++) {
+    const int64_t place = density->unknown[i], component = place / density->functions;
+    q[i] = U != NULL ? U[place] : 0;
+    if (U == NULL || !density->gauge[component]) continue;
+    const int64_t first = component * density->functions;
+    q[i] -= U[first] / density->constant[0] * density->constant[place - first];
+  }
 }
 
 /* p = dL/dv of the term with rates. */
@@ -60,13 +66,13 @@ dvi_status dvi_density_project(const dvi_density *density, const double *U, cons
                                double *q, double *v, double *p)
 {
   if (density == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "density: a field is needed");
-  take(density, U, q);
-  take(density, rate, v);
+  if (q != NULL) dvi__density_take(density, U, q);
+  if (v != NULL) dvi__density_take(density, rate, v);
   if (p == NULL) return DVI_OK;
   double *state = DVI_NEW(double, 2 * density->unknowns);
   if (state == NULL) return dvi__fail(DVI_NO_MEMORY, "density: no memory for a state");
-  take(density, U, state);
-  take(density, rate, state + density->unknowns);
+  dvi__density_take(density, U, state);
+  dvi__density_take(density, rate, state + density->unknowns);
   const dvi_status status = find_momenta(density, state, state + density->unknowns, p);
   dvi__release(state);
   return status;

@@ -210,7 +210,7 @@ static dvi_status solve(const dvi_density *density, double *room, double *U,
   search s = {.density = density, .n = n};
   double **const vectors[] = {&s.q, &s.F, &s.d, &s.trial, &s.F_trial, &s.part};
   for (int i = 0; i < 6; i++) *vectors[i] = room + i * n;
-  for (int64_t i = 0; i < n; i++) s.q[i] = U[density->unknown[i]];
+  dvi__density_take(density, U, s.q);
   DVI_TRY(iterate(&s));
   DVI_TRY(dvi_density_lift(density, 0, s.q, U));
   if (report != NULL)

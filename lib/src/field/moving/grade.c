@@ -38,8 +38,9 @@ static void place(dvi_moving *m, int count, const double *value)
 dvi_status dvi__moving_grade(const dvi_moving_terms *terms, dvi_moving *m)
 {
   const int count = FINE * m->cells;
-  double *x = DVI_NEW(double, 2 * (size_t)count), *value = x + count;
+  double *x = DVI_NEW(double, 2 * (size_t)count);
   if (x == NULL) return dvi__fail(DVI_NO_MEMORY, "moving: no memory for a monitor");
+  double *value = x + count;
   const dvi_status status = monitor(terms, m, count, x, value);
   if (status == DVI_OK) place(m, count, value);
   dvi__release(x);

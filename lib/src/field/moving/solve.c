@@ -161,8 +161,8 @@ dvi_status dvi_moving_solve(const dvi_moving *moving, double *q, dvi_moving_repo
                                       "found: let the nodes be free, or prescribe them");
   DVI_TRY(dvi__moving_check(moving, &(dvi__moving_state){.q = q}));
   double *work = DVI_NEW(double, 4 * n + 2 * entries);
-  statics s = {.m = *moving, .q = work, .trial = work + n};
   if (work == NULL) return dvi__fail(DVI_NO_MEMORY, "moving: no memory for a static state");
+  statics s = {.m = *moving, .q = work, .trial = work + n};
   s.gradient = s.trial + n;
   s.step = s.gradient + n;
   s.hessian = s.step + n;

@@ -8,7 +8,6 @@
 #include "core/status.h"
 #include "field/schroedinger/schroedinger.h"
 #include "field/space/kind.h"
-#include "num/finite.h"
 
 /* ---- checks ---- */
 
@@ -22,10 +21,6 @@ static dvi_status check(const dvi_schroedinger_terms *terms)
     return dvi__fail(DVI_BAD_ARGUMENT,
                      "schroedinger: hbar = %g and mass = %g; both are above 0 and finite",
                      terms->hbar, terms->mass);
-  if (!isfinite(terms->interaction))
-    return dvi__fail(DVI_BAD_ARGUMENT,
-                     "schroedinger: the interaction is %g; a finite one is needed",
-                     terms->interaction);
   if (terms->radial != 0 && terms->radial != 2 && terms->radial != 3)
     return dvi__fail(DVI_BAD_ARGUMENT,
                      "schroedinger: radial = %d; 2 and 3 dimensions of space are possible, and 0 "
@@ -121,14 +116,12 @@ static dvi_status take_interaction(dvi_schroedinger *s, const dvi_schroedinger_t
     return dvi__fail(DVI_NO_MEMORY, "schroedinger: no memory for %lld points",
                      (long long)s->points);
   for (int64_t k = 0; k < s->points; k++) s->beta[k] = terms->interaction;
-  if (terms->interaction_at == NULL) return DVI_OK;
-  const int failure = terms->interaction_at(s->points, s->x, s->beta, terms->user);
+  const int failure = terms->interaction_at != NULL
+                          ? terms->interaction_at(s->points, s->x, s->beta, terms->user)
+                          : 0;
   if (failure != 0)
     return dvi__fail(DVI_CALLBACK_FAILED, "schroedinger: the interaction failed with %d", failure);
-  const ptrdiff_t bad = dvi__first_not_finite((size_t)s->points, s->beta);
-  if (bad < 0) return DVI_OK;
-  return dvi__fail(DVI_NOT_FINITE, "schroedinger: the interaction is %g at %s = %g", s->beta[bad],
-                   dvi_space_axis(s->space, 0), s->x[bad]);
+  return dvi__schroedinger_check(s, "interaction", s->beta);
 }
 
 static dvi_status take_points(dvi_schroedinger *s, const dvi_schroedinger_terms *terms)

@@ -19,18 +19,22 @@ static uint64_t hash_numbers(uint64_t hash, int64_t count, const double *x)
   return x != NULL ? dvi__hash(hash, (size_t)count * sizeof *x, x) : hash;
 }
 
+static uint64_t hash_integer(uint64_t hash, int64_t number)
+{
+  return dvi__hash(hash, sizeof number, &number);
+}
+
 static uint64_t hash_equation(const dvi__wave_march *m)
 {
   const dvi_schroedinger *s = m->s;
-  const int64_t counts[] = {s->functions,       s->free,          s->points,      s->radial,
-                            s->depends_on_time, m->method.stages, m->method.order};
-  const double numbers[] = {s->hbar, s->mass};
-  uint64_t hash = dvi__hash(DVI__HASH_START, sizeof counts, counts);
-  hash = hash_numbers(dvi__hash(hash, sizeof numbers, numbers), s->dimension * s->points, s->x);
+  uint64_t hash = hash_integer(hash_integer(DVI__HASH_START, m->method.stages), m->method.order);
+  hash = hash_integer(hash_integer(hash, s->functions), s->depends_on_time);
+  hash = hash_numbers(hash_numbers(hash, 1, &s->hbar), 1, &s->mass);
   hash = dvi__hash(hash, (size_t)s->free * sizeof *s->place, s->place);
-  hash = hash_numbers(hash_numbers(hash, s->points, s->weight), s->points, s->still);
-  hash = hash_numbers(hash_numbers(hash, s->points, s->beta), s->free, s->diagonal);
-  return s->is_fourier ? hash : hash_numbers(hash, s->T.start[s->free], s->T.value);
+  hash = hash_numbers(hash_numbers(hash, s->dimension * s->points, s->x), s->points, s->weight);
+  hash = hash_numbers(hash_numbers(hash, s->points, s->still), s->points, s->beta);
+  if (s->is_fourier) return hash_numbers(hash, s->free, s->diagonal);
+  return hash_numbers(hash, s->T.start[s->free], s->T.value);
 }
 
 void dvi__wave_save(const void *self, dvi__sections_writer *writer)

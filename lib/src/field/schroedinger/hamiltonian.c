@@ -6,7 +6,6 @@
 #include "core/status.h"
 #include "field/schroedinger/schroedinger.h"
 #include "field/space/kind.h"
-#include "num/finite.h"
 
 dvi_status dvi__schroedinger_make_room(const dvi_schroedinger *s, dvi__schroedinger_room *room)
 {
@@ -27,17 +26,35 @@ void dvi__schroedinger_clear_room(dvi__schroedinger_room *room)
 
 /* ---- potential ---- */
 
-static dvi_status refuse_value(const dvi_schroedinger *s, double t, ptrdiff_t k, double V)
+/* Sums and products of larger energies could overflow. */
+static const double largest_energy = 1e100;
+
+/* Find a value that is not finite, or too large. */
+static ptrdiff_t find_bad(int64_t count, const double *values)
+{
+  ptrdiff_t k = 0;
+  while (k < count && fabs(values[k]) <= largest_energy) k++;
+  return k < count ? k : -1;
+}
+
+static dvi_status refuse_value(const dvi_schroedinger *s, const char *name, ptrdiff_t k,
+                               double value)
 {
   char place[96] = "";
   dvi__note note = {place, sizeof place, 0};
   for (int d = 0; d < s->dimension; d++)
     dvi__note_add(&note, "%s%g", d > 0 ? ", " : "", s->x[d * s->points + k]);
-  return dvi__fail(
-      DVI_NOT_FINITE,
-      "schroedinger: the potential is %g at (%s) and t = %g; a finite number is needed "
-      "at each quadrature point, with walls as fixed ends of the domain",
-      V, place, t);
+  return dvi__fail(DVI_NOT_FINITE,
+                   "schroedinger: the %s is %g at (%s); a finite number is needed at each "
+                   "quadrature point, up to 1e100, with walls as fixed ends of the domain",
+                   name, value, place);
+}
+
+dvi_status dvi__schroedinger_check(const dvi_schroedinger *s, const char *name,
+                                   const double *values)
+{
+  const ptrdiff_t bad = find_bad(s->points, values);
+  return bad < 0 ? DVI_OK : refuse_value(s, name, bad, values[bad]);
 }
 
 dvi_status dvi__schroedinger_potential(const dvi_schroedinger *s, double t, double *V)
@@ -50,8 +67,8 @@ dvi_status dvi__schroedinger_potential(const dvi_schroedinger *s, double t, doub
   if (failure != 0)
     return dvi__fail(DVI_CALLBACK_FAILED, "schroedinger: the potential failed with %d at t = %g",
                      failure, t);
-  const ptrdiff_t bad = dvi__first_not_finite((size_t)s->points, V);
-  return bad < 0 ? DVI_OK : refuse_value(s, t, bad, V[bad]);
+  const dvi_status status = dvi__schroedinger_check(s, "potential", V);
+  return status == DVI_OK ? DVI_OK : dvi__fail_in(status, "t = %g", t);
 }
 
 /* Add a row of w V B^T B of one point to row i of values. Columns that follow each other do so in

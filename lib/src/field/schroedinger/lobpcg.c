@@ -15,8 +15,8 @@
 
 enum { ITERATIONS = 1000, MORE = 4, BLOCKS = 3 };
 
-/* Residuals are as small as this beside the energies above the potential's minimum. Energies are
- * then as good as the square of it. */
+/* Residuals are as small as this beside an energy above the potential's minimum. Energies are then
+ * as good as the square of it. */
 static const double tolerance = 1e-11;
 
 typedef struct span {
@@ -79,18 +79,19 @@ static void combine(const span *b, int first, const double *from, const double *
 }
 
 /* Give the blocks X, W and P of the span's modes. Returns the largest residual of the first `count`
- * ones, relative to the energy. */
+ * ones beside the energy of the last one. */
 static double renew(span *b, int count)
 {
+  const double scale = b->theta[b->width - 1] - b->least;
   double worst = 0;
   for (int j = 0; j < b->width; j++) {
-    const double *y = b->Y + j * b->columns, energy = b->theta[j] - b->least;
+    const double *y = b->Y + j * b->columns, energy = fmax(b->theta[j] - b->least, 0.01 * scale);
     double *x = b->block + j * b->n, *w = x + b->width * b->n, *p = w + b->width * b->n;
     combine(b, 0, b->basis, y, x);
     combine(b, b->width, b->basis, y, p);
     combine(b, 0, b->HB, y, w);
     for (int64_t i = 0; i < b->n; i++) w[i] -= b->theta[j] * x[i];
-    if (j < count) worst = fmax(worst, sqrt(dot(b->n, w, w)) / energy);
+    if (j < count) worst = fmax(worst, sqrt(dot(b->n, w, w)) / scale);
     for (int64_t i = 0; i < b->n; i++) w[i] /= b->s->diagonal[i] + energy;
   }
   return worst;

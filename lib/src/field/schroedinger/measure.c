@@ -68,7 +68,7 @@ dvi_status dvi_schroedinger_measure(const dvi_schroedinger *equation, double t, 
                                     dvi_schroedinger_values *values)
 {
   const dvi_schroedinger *s = equation;
-  dvi_schroedinger_values found;
+  dvi_schroedinger_values found = {0};
   if (s == NULL || psi == NULL || values == NULL || !isfinite(t))
     return dvi__fail(DVI_BAD_ARGUMENT,
                      "schroedinger: an equation, a finite time, an amplitude and a place for the "
@@ -84,6 +84,10 @@ dvi_status dvi_schroedinger_measure(const dvi_schroedinger *equation, double t, 
                                 : dvi__fail(DVI_NO_MEMORY, "schroedinger: no memory for values");
   dvi__release(room);
   dvi__release(work);
-  if (status == DVI_OK) *values = found;
-  return status;
+  DVI_TRY(status);
+  if (!isfinite(found.norm) || !isfinite(found.energy))
+    return dvi__fail(DVI_NOT_FINITE, "schroedinger: psi has the norm %g and the energy %g",
+                     found.norm, found.energy);
+  *values = found;
+  return DVI_OK;
 }

@@ -94,28 +94,82 @@ static double dot(int64_t n, const double *x, const double *y)
   return sum;
 }
 
-/* Replace eigenvalues, which have the roundings of the largest ones, by Rayleigh's quotients. These
- * have only those of the state's own energies, and the square of the vector's error. */
-static dvi_status polish(const dvi_schroedinger *s, int count, double *energy, double *z)
+/* The diagonal entries of M and T. */
+static double mass_of(const dvi_schroedinger *s, int64_t i)
+{
+  return s->is_fourier ? 1 : s->M[dvi__csr_find(&s->T, i, (int)i)];
+}
+
+static double kinetic_of(const dvi_schroedinger *s, int64_t i)
+{
+  return s->is_fourier ? s->diagonal[i] : s->T.value[dvi__csr_find(&s->T, i, (int)i)];
+}
+
+/* Tell if a residual r, beside M x of size 1, is that of a state of this energy. Roundings are of
+ * the size of the largest kinetic energy. */
+static int is_small(const dvi_schroedinger *s, const double *r, double energy)
+{
+  const double scale = fmax(fabs(energy), energy - least_of(s));
+  double sum = 0, largest = 0;
+  for (int64_t i = 0; i < s->free; i++) {
+    sum += r[i] * r[i] / mass_of(s, i);
+    largest = fmax(largest, kinetic_of(s, i) / mass_of(s, i));
+  }
+  return sqrt(sum) <= 1e-4 * scale + 1e-10 * largest;
+}
+
+/* Replace an eigenvalue, which has the roundings of the largest ones, by Rayleigh's quotient. This
+ * has only those of the state's own energies, and the square of the vector's error. */
+static dvi_status polish(const dvi_schroedinger *s, const dvi__schroedinger_room *room, double *x,
+                         double *Mx, double *Hx, double *energy)
 {
   const int64_t n = s->free;
+  dvi__schroedinger_choose_sign(n, x);
+  dvi__schroedinger_mass(s, x, Mx);
+  const double by = 1 / sqrt(dot(n, x, Mx));
+  for (int64_t k = 0; k < n; k++) {
+    x[k] *= by;
+    Mx[k] *= by;
+  }
+  dvi__schroedinger_act(s, s->still, 0, 1, x, Hx, room);
+  *energy = dot(n, x, Hx);
+  for (int64_t k = 0; k < n; k++) Hx[k] -= *energy * Mx[k];
+  if (is_small(s, Hx, *energy)) return DVI_OK;
+  return dvi__fail(DVI_NOT_CONVERGED,
+                   "schroedinger: the stationary state of energy %g is not resolved, because the "
+                   "potential goes too far beyond it for the digits of numbers",
+                   *energy);
+}
+
+static dvi_status polish_all(const dvi_schroedinger *s, int count, double *energy, double *z)
+{
   dvi__schroedinger_room room;
   DVI_TRY(dvi__schroedinger_make_room(s, &room));
-  double *y = DVI_NEW(double, n);
-  for (int i = 0; i < count && y != NULL; i++) {
-    double *x = z + i * n;
-    dvi__schroedinger_mass(s, x, y);
-    const double norm = dot(n, x, y);
-    dvi__schroedinger_act(s, s->still, 0, 1, x, y, &room);
-    energy[i] = dot(n, x, y) / norm;
-    for (int64_t k = 0; k < n; k++) x[k] /= sqrt(norm);
-    dvi__schroedinger_choose_sign(n, x);
-  }
+  double *y = DVI_NEW(double, 2 * s->free);
+  dvi_status status = y != NULL ? DVI_OK
+                                : dvi__fail(DVI_NO_MEMORY, "schroedinger: no memory for residuals");
+  for (int i = 0; i < count && status == DVI_OK; i++)
+    status = polish(s, &room, z + i * s->free, y, y + s->free, energy + i);
   dvi__schroedinger_clear_room(&room);
-  if (y == NULL)
-    return dvi__fail(DVI_NO_MEMORY, "schroedinger: no memory for %lld functions", (long long)n);
   dvi__release(y);
-  return DVI_OK;
+  return status;
+}
+
+static void swap(double *a, double *b)
+{
+  const double kept = *a;
+  *a = *b;
+  *b = kept;
+}
+
+/* Sort states, whose energies may have changed places by roundings. */
+static void sort(int64_t n, int count, double *energy, double *z)
+{
+  for (int i = 1; i < count; i++)
+    for (int j = i; j > 0 && energy[j] < energy[j - 1]; j--) {
+      swap(energy + j, energy + j - 1);
+      for (int64_t k = 0; k < n; k++) swap(z + j * n + k, z + (j - 1) * n + k);
+    }
 }
 
 dvi_status dvi__schroedinger_lowest(const dvi_schroedinger *s, int count, double *energy, double *z)
@@ -127,7 +181,9 @@ dvi_status dvi__schroedinger_lowest(const dvi_schroedinger *s, int count, double
     status = find_full(s, count, energy, z);
   else
     status = dvi__schroedinger_iterate_modes(s, count, energy, z);
-  return status == DVI_OK ? polish(s, count, energy, z) : status;
+  if (status == DVI_OK) status = polish_all(s, count, energy, z);
+  if (status == DVI_OK) sort(s->free, count, energy, z);
+  return status;
 }
 
 /* ---- for users ---- */

@@ -38,6 +38,10 @@ typedef struct dvi__schroedinger_room {
 dvi_status dvi__schroedinger_make_room(const dvi_schroedinger *s, dvi__schroedinger_room *room);
 void dvi__schroedinger_clear_room(dvi__schroedinger_room *room);
 
+/* Check values at the points. DVI_NOT_FINITE, with the name and the point. */
+dvi_status dvi__schroedinger_check(const dvi_schroedinger *s, const char *name,
+                                   const double *values);
+
 /* Give V [points] at a time, checked. DVI_CALLBACK_FAILED, DVI_NOT_FINITE. */
 dvi_status dvi__schroedinger_potential(const dvi_schroedinger *s, double t, double *V);
 

@@ -90,7 +90,9 @@ dvi_status dvi__shifted_factor(dvi__shifted *a, const double complex *c, const d
       a->pairs[2 * e] = creal(entry);
       a->pairs[2 * e + 1] = cimag(entry);
     }
-    DVI_TRY(dvi__linear_factor(a->factor[j], a->pairs));
+    const dvi_status status = dvi__linear_factor(a->factor[j], a->pairs);
+    if (status != DVI_OK)
+      return dvi__fail_in(status, "schroedinger: the matrix M + i dt H of a step");
   }
   return DVI_OK;
 }

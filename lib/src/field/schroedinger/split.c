@@ -28,10 +28,10 @@ struct dvi__split {
   int length_of[JUMPS_MOST];   /* its number among those that differ */
   double length[LENGTHS_MOST]; /* parts of h that differ */
   dvi__shifted *cayley;        /* NULL for fourier */
-  double *turn; /* [lengths][free][3] cosine, sine and half their excess, for fourier */
+  double *turn;                /* [lengths][free][4] changes by phases, of fourier */
   dvi__schroedinger_room room;
   double *V;             /* [points] */
-  double *next;          /* [2*free] */
+  double *next, *carry;  /* [2*free], and what rounding drops of it */
   double *rest;          /* [2*free] */
   double *change, *left; /* [2*free], [4*free] of Cayley's transform */
   double *at; /* [3*free] potential, interaction and mass of each function of a nodal space */
@@ -85,12 +85,13 @@ static dvi_status make_room(dvi__split *p)
   const dvi_schroedinger *s = p->s;
   DVI_TRY(dvi__schroedinger_make_room(s, &p->room));
   p->V = DVI_NEW(double, s->points);
-  p->next = DVI_NEW(double, 13 * s->free);
-  p->turn = DVI_NEW(double, s->is_fourier ? 3 * s->free * p->lengths : 1);
+  p->next = DVI_NEW(double, 15 * s->free);
+  p->turn = DVI_NEW(double, s->is_fourier ? 4 * s->free * p->lengths : 1);
   if (p->V == NULL || p->next == NULL || p->turn == NULL)
     return dvi__fail(DVI_NO_MEMORY, "schroedinger: no memory for %lld functions",
                      (long long)s->free);
-  p->rest = p->next + 2 * s->free;
+  p->carry = p->next + 2 * s->free;
+  p->rest = p->carry + 2 * s->free;
   p->change = p->rest + 2 * s->free;
   p->left = p->change + 2 * s->free;
   p->at = p->left + 4 * s->free;
@@ -126,25 +127,25 @@ void dvi__split_destroy(dvi__split **split)
   *split = NULL;
 }
 
-/* c^2 + s^2 - 1, which is a rounding of c and s. It is the same in each step and would add up. */
-static double excess(double c, double s)
+/* Half of |1 + x + iy|^2 - 1, which is a rounding of x and y. It is the same in each step and would
+ * add up. */
+static double excess(double x, double y)
 {
-  const dvi__twofold a = dvi__exact_product(c, c), b = dvi__exact_product(s, s);
-  const double larger = fmax(a.head, b.head), smaller = fmin(a.head, b.head);
-  return ((larger - 1) + smaller) + (a.tail + b.tail);
+  const dvi__twofold a = dvi__exact_product(x, x), b = dvi__exact_product(y, y),
+                     sum = dvi__exact_sum(2 * x, a.head);
+  return 0.5 * ((sum.head + b.head) + (sum.tail + a.tail + b.tail));
 }
 
+/* exp(-i angle) - 1 of each mode, and what is missing for an exact phase. */
 static void find_turns(dvi__split *p)
 {
   const int64_t n = p->s->free;
   for (int j = 0; j < p->lengths; j++)
     for (int64_t i = 0; i < n; i++) {
-      const double angle = p->h * p->length[j] * p->s->diagonal[i] / p->s->hbar;
-      const double c = cos(angle), s = sin(angle);
-      double *turn = p->turn + 3 * (j * n + i);
-      turn[0] = c;
-      turn[1] = s;
-      turn[2] = 0.5 * excess(c, s);
+      const double half = 0.5 * p->h * p->length[j] * p->s->diagonal[i] / p->s->hbar, s = sin(half),
+                   real = -2 * s * s, minus = 2 * s * cos(half), over = excess(real, minus);
+      const double turn[] = {real, minus, -over * (1 + real), -over * minus};
+      memcpy(p->turn + 4 * (j * n + i), turn, sizeof turn);
     }
 }
 
@@ -180,6 +181,12 @@ static void turn_phases(int64_t count, double time, const double *V, const doubl
   }
 }
 
+static void add_rest(dvi__split *p)
+{
+  for (int64_t i = 0; i < 2 * p->s->free; i++)
+    dvi__add_compensated(p->next + i, p->carry + i, p->rest[i]);
+}
+
 /* Modes are orthonormal at the points, so that B^T w leads back. */
 static void turn_at_points(dvi__split *p, double time)
 {
@@ -192,8 +199,10 @@ static void turn_at_points(dvi__split *p, double time)
     u[k] *= s->weight[k];
     v[k] *= s->weight[k];
   }
+  memset(p->rest, 0, (size_t)(2 * s->free) * sizeof *p->rest);
   for (int c = 0; c < 2; c++)
-    dvi__schroedinger_add_points(s, u + c * s->points, p->next + c * s->free, p->room.work);
+    dvi__schroedinger_add_points(s, u + c * s->points, p->rest + c * s->free, p->room.work);
+  add_rest(p);
 }
 
 /* Give each nodal function the mean of values at its points, of which ends of cells have two. */
@@ -216,7 +225,7 @@ static void turn_at_nodes(dvi__split *p, double time)
   if (s->beta != NULL) average(p, s->beta, p->at + s->free);
   turn_phases(s->free, time, p->at, s->beta != NULL ? p->at + s->free : NULL, p->next,
               p->next + s->free, p->rest, p->rest + s->free);
-  for (int64_t i = 0; i < 2 * s->free; i++) p->next[i] += p->rest[i];
+  add_rest(p);
 }
 
 static dvi_status turn_potential(dvi__split *p, double t, double time)
@@ -229,14 +238,20 @@ static dvi_status turn_potential(dvi__split *p, double t, double time)
   return DVI_OK;
 }
 
+/* Large changes and small ones are added one after the other, so that small ones are not lost. */
 static void turn_modes(dvi__split *p, int length)
 {
   const int64_t n = p->s->free;
+  double *x = p->next, *y = x + n, *cx = p->carry, *cy = cx + n;
   for (int64_t i = 0; i < n; i++) {
-    const double *turn = p->turn + 3 * (length * n + i), x = p->next[i], y = p->next[n + i],
-                 u = turn[0] * x + turn[1] * y, v = turn[0] * y - turn[1] * x;
-    p->next[i] = u - turn[2] * u;
-    p->next[n + i] = v - turn[2] * v;
+    const double *turn = p->turn + 4 * (length * n + i), dx = turn[0] * x[i] + turn[1] * y[i],
+                 dy = turn[0] * y[i] - turn[1] * x[i],
+                 rest_x = turn[2] * x[i] + turn[3] * y[i] - (turn[0] * cx[i] + turn[1] * cy[i]),
+                 rest_y = turn[2] * y[i] - turn[3] * x[i] - (turn[0] * cy[i] - turn[1] * cx[i]);
+    dvi__add_compensated(x + i, cx + i, dx);
+    dvi__add_compensated(x + i, cx + i, rest_x);
+    dvi__add_compensated(y + i, cy + i, dy);
+    dvi__add_compensated(y + i, cy + i, rest_y);
   }
 }
 
@@ -268,7 +283,8 @@ static void take_cayley(dvi__split *p, int length)
     dvi__shifted_solve(p->cayley, length, p->rest);
     for (int64_t i = 0; i < 2 * n; i++) p->change[i] += p->rest[i];
   }
-  for (int64_t i = 0; i < 2 * n; i++) p->next[i] -= 2 * p->change[i];
+  for (int64_t i = 0; i < 2 * n; i++)
+    dvi__add_compensated(p->next + i, p->carry + i, -2 * p->change[i]);
 }
 
 /* ---- the step ---- */
@@ -289,8 +305,9 @@ dvi_status dvi__split_step(dvi__split *p, double t, double *z, double *compensat
 {
   const size_t size = (size_t)(2 * p->s->free) * sizeof *z;
   memcpy(p->next, z, size);
+  memcpy(p->carry, compensation, size);
   for (int j = 0; j < p->jumps; j++) DVI_TRY(jump(p, j, &t));
   memcpy(z, p->next, size);
-  memset(compensation, 0, size);
+  memcpy(compensation, p->carry, size);
   return DVI_OK;
 }

@@ -40,8 +40,7 @@ dvi_status dvi__element_prepare_lanes(dvi__stepper *self, int capacity)
   const int solver = dvi__element_solver(self), patient = solver == DVI__SOLVER_FIXED_POINT;
   if (!patient && solver != DVI__SOLVER_AUTO) return DVI_OK;
   if (!lanes_pay(self->system->n, dvi__action_nodes(action))) return DVI_OK;
-  if (!dvi__action_has_fixed_point(action) || dvi__action_has_preconditioner(action) ||
-      !dvi__system_has_gradients(self->system))
+  if (!dvi__action_has_fixed_point(action) || !dvi__system_has_gradients(self->system))
     return DVI_OK;
   lanes *own = self->lanes = DVI_NEW(lanes, 1);
   if (own == NULL) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);

@@ -235,6 +235,11 @@ dvi_status dvi__element_add_term(dvi__stepper *self, const dvi__row_term *term)
   return element_renew_solver(self);
 }
 
+dvi_status dvi__element_keep_lengths(dvi__stepper *self, int count)
+{
+  return dvi__action_keep_lengths(dvi__element_action(self), count);
+}
+
 dvi__action *dvi__element_action(const dvi__stepper *self)
 {
   return ((const dvi__element *)self->own)->action;

@@ -95,6 +95,10 @@ void dvi__element_path(const dvi__stepper *self, const double *q0, double h, dou
                        double *v);
 void dvi__element_explain(const dvi__stepper *self, dvi__text *text);
 
+/* Keep what the iteration makes for each length, for methods that a composition may have as its
+ * base. */
+dvi_status dvi__element_keep_lengths(dvi__stepper *self, int count);
+
 /* Step members side by side (element_lanes.c). */
 dvi_status dvi__element_prepare_lanes(dvi__stepper *self, int capacity);
 void dvi__element_clear_lanes(dvi__stepper *self);

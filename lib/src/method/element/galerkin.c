@@ -91,4 +91,5 @@ const dvi__method dvi__galerkin = {
     .uses = DVI__ELEMENT_TERMS | DVI__HOLONOMIC | DVI__CONTACT | DVI__DAMPING,
     .create = galerkin_create,
     DVI__ELEMENT_OPERATIONS,
+    .keep_lengths = dvi__element_keep_lengths,
 };

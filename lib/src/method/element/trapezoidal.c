@@ -25,4 +25,5 @@ const dvi__method dvi__trapezoidal = {
     .uses = DVI__ELEMENT_TERMS | DVI__HOLONOMIC | DVI__CONTACT | DVI__DAMPING,
     .create = trapezoidal_create,
     DVI__ELEMENT_OPERATIONS,
+    .keep_lengths = dvi__element_keep_lengths,
 };

@@ -1,5 +1,6 @@
 /* The section density, which is read when all others about it are: the space, the field and its
  * terms are made, and the scene's coordinates become the unknowns. */
+#include <dvi/schroedinger.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -77,7 +78,7 @@ static bool check_motion(dvi_scene *scene)
 
 /* ---- the field ---- */
 
-static int list_parts(const struct dvi__scene_density *s, dvi_density_part *part)
+int dvi__density_parts(const struct dvi__scene_density *s, dvi_density_part *part)
 {
   int parts = 0;
   for (int class = 0; class < DVI__DENSITY_CLASSES; class ++) {
@@ -104,7 +105,7 @@ static dvi_status make_field(dvi_scene *scene)
                                    .space = s->space,
                                    .components = s->jets.components,
                                    .part = part,
-                                   .parts = list_parts(s, part),
+                                   .parts = dvi__density_parts(s, part),
                                    .condition = s->condition,
                                    .conditions = s->conditions,
                                    .translations = s->is_uniform && !s->has_placed_data};
@@ -116,18 +117,25 @@ static dvi_status make_field(dvi_scene *scene)
   return status;
 }
 
-/* Complain with the library's last sentence, about the boundary if it is about a part of that. */
+bool dvi__density_complain(dvi_scene *scene, const dvi__tree *section, dvi_status status)
+{
+  dvi__span span;
+  const char *words;
+  if (status == DVI_CALLBACK_FAILED && dvi__fault_status() != DVI_OK) status = dvi__fault_status();
+  if (status == DVI_NO_MEMORY) return dvi__scene_no_memory(scene);
+  if (dvi__fault_place(&span, &words))
+    return dvi__complain(scene->complaint, DVI_NOT_FINITE, span, "at the start: %s", words);
+  return dvi__complain(scene->complaint, status, section->span, "%s", dvi_last_error());
+}
+
+/* Complain of the field, about the boundary if the sentence is about a part of that. */
 static bool complain(dvi_scene *scene, dvi_status status)
 {
   const dvi__tree *boundary = dvi__tree_find(scene->tree, "boundary");
-  if (status == DVI_CALLBACK_FAILED && dvi__fault_status() != DVI_OK) status = dvi__fault_status();
-  if (status == DVI_NO_MEMORY) return dvi__scene_no_memory(scene);
   const char *sentence = dvi_last_error();
   const bool is_of_boundary = boundary != NULL && (strstr(sentence, "boundary") != NULL ||
                                                    strstr(sentence, "condition") != NULL);
-  return dvi__complain(scene->complaint, status,
-                       (is_of_boundary ? boundary : scene->density->section)->span, "%s%s%s",
-                       sentence, dvi_scene_fault()[0] != '\0' ? "; " : "", dvi_scene_fault());
+  return dvi__density_complain(scene, is_of_boundary ? boundary : scene->density->section, status);
 }
 
 /* ---- the unknowns ---- */
@@ -254,7 +262,7 @@ static bool make(dvi_scene *scene)
   set_form(scene);
   const bool good = declare_unknowns(scene) && make_start(scene) &&
                     dvi__density_make_probes(scene) && dvi__choose_field_columns(scene) &&
-                    choose_step(scene);
+                    dvi__lattice_find_symmetries(scene) && choose_step(scene);
   scene->jets = NULL; /* from here on the coordinates are the unknowns */
   return good;
 }
@@ -268,13 +276,16 @@ bool dvi__read_density(dvi_scene *scene, const dvi__tree *section)
 bool dvi__read_schroedinger(dvi_scene *scene, const dvi__tree *section)
 {
   scene->density->section = section;
-  return read_parts(scene, section, dvi__schroedinger_node) && make(scene);
+  return read_parts(scene, section, dvi__schroedinger_node) && make(scene) &&
+         dvi__equation_check_ground(scene);
 }
 
 void dvi__scene_density_clear(dvi_scene *scene)
 {
   if (scene->density == NULL) return;
+  if (scene->density->equation != NULL) dvi_schroedinger_destroy(&scene->density->equation->made);
   dvi_density_destroy(&scene->density->density);
   dvi_space_destroy(&scene->density->space);
   dvi_mesh_destroy(&scene->density->mesh);
+  dvi_mesh_destroy(&scene->density->shown);
 }

@@ -1,5 +1,4 @@
 /* The sections domain, space and fields, and the names that they bring. */
-#include <stdlib.h>
 #include <string.h>
 
 #include "scene/density/scene_density.h"
@@ -245,73 +244,4 @@ const dvi__declared_field *dvi__field_named(const dvi_scene *scene, const char *
   for (int i = 0; i < s->fields; i++)
     if (strcmp(s->field[i].name, name) == 0) return s->field + i;
   return NULL;
-}
-
-/* ---- making the space ---- */
-
-/* Return the smallest number of points from `least` on that has no prime factors but 2, 3, 5. */
-static int good_points(int least)
-{
-  for (int points = least;; points++) {
-    int rest = points;
-    for (int prime = 2; prime <= 5; prime++)
-      while (rest % prime == 0) rest /= prime;
-    if (rest == 1) return points;
-  }
-}
-
-/* Give a Fourier axis more points than the degree of a polynomial density times its modes, so that
- * its integrals are exact. Its own choice does so up to the degree 4. */
-static void choose_points(struct dvi__scene_density *s, int d)
-{
-  static const char start[] = "fourier:modes=";
-  const char *kind = s->axis[d].kind;
-  char *rest;
-  if (strncmp(kind, start, sizeof start - 1) != 0 || s->degree <= 4) return;
-  const long modes = strtol(kind + sizeof start - 1, &rest, 10);
-  if (*rest != '\0' || modes < 1 || modes > 1000000 / s->degree) return;
-  (void)dvi__print(s->chosen[d], sizeof s->chosen[d], "%s%ld,points=%d", start, modes,
-                   good_points(s->degree * (int)modes + 1));
-  s->axis[d].kind = s->chosen[d];
-}
-
-static bool is_fourier(const char *kind)
-{
-  return strncmp(kind, "fourier", strlen("fourier")) == 0;
-}
-
-static bool check_periods(dvi_scene *scene)
-{
-  const struct dvi__scene_density *s = scene->density;
-  for (int d = 0; d < s->jets.dimension; d++)
-    if (is_fourier(s->axis[d].kind) && !s->axis[d].periodic)
-      return dvi__scene_refuse(scene, dvi__tree_find(scene->tree, "space")->span,
-                               "fourier is periodic, and the axis %s is not; say "
-                               "'boundary: periodic', or '{%s: periodic}'",
-                               s->jets.axis[d], s->jets.axis[d]);
-  return true;
-}
-
-bool dvi__density_make_space(dvi_scene *scene)
-{
-  struct dvi__scene_density *s = scene->density;
-  const dvi__tree *section = dvi__tree_find(scene->tree, "space");
-  if (s->mesh == NULL && section == NULL)
-    return dvi__scene_refuse(scene, s->place->span,
-                             "beside 'domain' the section 'space' is missing, as in "
-                             "'space: fem:degree=2,cells=100'");
-  if (s->mesh == NULL && !check_periods(scene)) return false;
-  for (int d = 0; d < s->jets.dimension && s->mesh == NULL; d++) choose_points(s, d);
-  const dvi_space_options options = {.size = sizeof options,
-                                     .kind = s->mesh == NULL   ? NULL
-                                             : s->kind != NULL ? s->kind
-                                                               : "fem:degree=1",
-                                     .axis = s->axis,
-                                     .axes = s->mesh == NULL ? s->jets.dimension : 0,
-                                     .mesh = s->mesh};
-  const dvi_status status = dvi_space_create(&options, &s->space);
-  if (status == DVI_OK) s->functions = dvi_space_functions(s->space);
-  return status == DVI_OK ||
-         dvi__complain(scene->complaint, status, (section != NULL ? section : s->place)->span, "%s",
-                       dvi_last_error());
 }

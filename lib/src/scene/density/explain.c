@@ -102,8 +102,3 @@ const char *dvi_scene_component(const dvi_scene *scene, int i)
              ? NULL
              : scene->density->component[i];
 }
-
-const dvi_mesh *dvi__density_mesh(const dvi_scene *scene)
-{
-  return scene->density != NULL ? scene->density->mesh : NULL;
-}

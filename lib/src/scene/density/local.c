@@ -156,24 +156,27 @@ static bool read_component(dvi__context *c, dvi__node node, unsigned may, dvi__l
                            "%s is a function of position, without the fields", c->where);
 }
 
+/* Refuse anything but a number or a vector of `count`. */
+static bool check_shape(const dvi__context *c, const dvi__tree *tree, dvi__shape found, int count)
+{
+  char shape[48], needed[48];
+  if (count == 1 ? found.rank == 0 : found.rank == 1 && found.rows == count) return true;
+  return dvi__scene_refuse(
+      c->scene, tree->span, "%s is %s here, where %s is needed", c->where,
+      dvi__shape_text(found, shape, sizeof shape),
+      dvi__shape_text((dvi__shape){count > 1, count, 1}, needed, sizeof needed));
+}
+
 bool dvi__local_read(dvi_scene *scene, const dvi__tree *tree, unsigned may, const char *where,
                      int count, dvi__local **local)
 {
-  char shape[48], needed[48];
   const dvi__expression *e;
   dvi__context c;
   if (!dvi__tree_expression(scene, tree, &e) ||
       !dvi__context_make(&c, scene, DVI__MENTIONS_Q | may, where))
     return false;
   const dvi__value value = dvi__elaborate(&c, e);
-  bool good = value.shape.rank >= 0;
-  const bool fits = count == 1 ? value.shape.rank == 0
-                               : value.shape.rank == 1 && value.shape.rows == count;
-  if (good && !fits)
-    good = dvi__scene_refuse(
-        scene, tree->span, "%s is %s here, where %s is needed", where,
-        dvi__shape_text(value.shape, shape, sizeof shape),
-        dvi__shape_text((dvi__shape){count > 1, count, 1}, needed, sizeof needed));
+  bool good = value.shape.rank >= 0 && check_shape(&c, tree, value.shape, count);
   for (int k = 0; k < count && good; k++)
     good = read_component(&c, value.node == NULL ? value.one : value.node[k], may, local + k);
   dvi__context_free(&c);
@@ -194,27 +197,34 @@ static int limit_points(const dvi__local *local)
   return most > ROOM / POINTS ? ROOM / most : POINTS;
 }
 
+/* Evaluate second derivatives, of which the pattern has both triangles. */
+static int evaluate_second(const dvi__local *local, int count, const double *const *in, results to)
+{
+  double seconds[ROOM];
+  const bool is_direct = local->pairs == local->entries;
+  double *const second[PAIRS] = {
+      [BY_VARIABLES] = to.l_zz == NULL || is_direct ? to.l_zz : seconds, [BY_TIME] = to.l_tt};
+  const int failed = dvi__function_second(local->term->function, count, in, second);
+  for (int k = 0; k < local->pairs && to.l_zz != NULL && !is_direct; k++)
+    memcpy(to.l_zz + k * count, seconds + local->entry[k] * count, (size_t)count * sizeof *seconds);
+  return failed;
+}
+
 /* Evaluate at so few points that there is room for them. */
 static int evaluate(const dvi__local *local, int count, double t, const double *x, const double *z,
                     results to)
 {
-  double time[POINTS], seconds[ROOM];
-  const bool is_direct = local->pairs == local->entries;
-  const double *in[BLOCKS] = {time, NULL, x, z};
+  double time[POINTS];
+  const double *const in[BLOCKS] = {time, NULL, x, z};
+  double *const first[BLOCKS] = {[VARIABLES] = to.l_z, [TIME] = to.l_t};
   dvi__function *f = local->term->function;
-  double
-      *first[BLOCKS] = {[VARIABLES] = to.l_z, [TIME] = to.l_t},
-      *second[PAIRS] = {
-          [BY_VARIABLES] = to.l_zz == NULL || is_direct ? to.l_zz : seconds, [BY_TIME] = to.l_tt};
   int failed = 0;
-  for (int k = 0; k < count && local->has_time; k++) time[k] = t;
+  for (int k = 0; k < count; k++) time[k] = t;
   if (to.l != NULL) failed = dvi__function_value(f, count, in, to.l);
   if (failed == 0 && (to.l_z != NULL || to.l_t != NULL))
     failed = dvi__function_gradient(f, count, in, first);
   if (failed == 0 && (to.l_zz != NULL || to.l_tt != NULL))
-    failed = dvi__function_second(f, count, in, second);
-  for (int k = 0; k < local->pairs && to.l_zz != NULL && !is_direct; k++)
-    memcpy(to.l_zz + k * count, seconds + local->entry[k] * count, (size_t)count * sizeof *seconds);
+    failed = evaluate_second(local, count, in, to);
   return dvi__fault_check(local->term, count, in, 0, failed);
 }
 

@@ -6,6 +6,8 @@
 #ifndef DVI_SCENE_DENSITY_SCENE_DENSITY_H
 #define DVI_SCENE_DENSITY_SCENE_DENSITY_H
 #include <dvi/density.h>
+#include <dvi/multisymplectic.h>
+#include <dvi/schroedinger.h>
 
 #include "scene/elaborate/kernels.h"
 
@@ -56,6 +58,14 @@ typedef struct dvi__declared_field {
   int first, components;
 } dvi__declared_field;
 
+/* Schroedinger's equation of a scene, made when it is first asked for. */
+struct dvi__equation {
+  double hbar, mass;
+  int radial; /* 0, or the dimension */
+  dvi__local *potential, *interaction;
+  dvi_schroedinger *made; /* or NULL */
+};
+
 /* The classes into which the summands of a density are sorted, which are those of its parts. */
 enum { DVI__DENSITY_CLASSES = DVI_DENSITY_GENERAL + 1 };
 
@@ -65,6 +75,7 @@ struct dvi__scene_density {
   dvi__span axis_span[DVI_AXES_MAX];
   const dvi__tree *place; /* the section domain or mesh */
   dvi_mesh *mesh;         /* or NULL */
+  dvi_mesh *shown;        /* of a domain, for values. NULL before it is asked for */
   const char *kind;       /* of the space, or NULL */
   dvi__declared_field *field;
   int fields;
@@ -78,13 +89,17 @@ struct dvi__scene_density {
   const dvi__tree *section;               /* density or schroedinger */
   dvi__local *part[DVI__DENSITY_CLASSES]; /* NULL for classes without summands */
   int summands[DVI__DENSITY_CLASSES];
-  int degree;                    /* of the density in the fields, or -1 if no polynomial */
-  bool is_uniform;               /* the density does not depend on position */
-  bool is_static;                /* it has no rates */
-  char chosen[DVI_AXES_MAX][96]; /* kinds of the axes, with the points chosen here */
+  int degree;                          /* of the density in the fields, or -1 if no polynomial */
+  bool is_uniform;                     /* the density does not depend on position */
+  bool is_static;                      /* it has no rates */
+  char chosen[DVI_AXES_MAX][96];       /* kinds of the axes, with the points chosen here */
   dvi_space *space;
   dvi_density *density;
   int64_t functions;
+  dvi_multisymplectic_symmetry *symmetry; /* [symmetries] of a march on a lattice */
+  int symmetries;
+  struct dvi__equation *equation; /* NULL without the section schroedinger */
+  double ground;                  /* norm of the ground state that is asked for, or 0 */
 };
 
 /* Return the number of components of all fields. */
@@ -109,13 +124,53 @@ bool dvi__density_sort(dvi__context *c, dvi__node root);
 /* Make the space, for a density of the degree that is known. */
 bool dvi__density_make_space(dvi_scene *scene);
 
+/* Complain with the library's last sentence about a section, or of the part of an expression that
+ * has no value. Returns false. */
+bool dvi__density_complain(dvi_scene *scene, const dvi__tree *section, dvi_status status);
+
 /* Refuse variable k of a function, which is of too high an order along an axis. */
 bool dvi__refuse_order(dvi_scene *scene, const dvi__local *local, int k, int axis);
 
 /* Give the coefficients [components*functions] of the start and of its rate. */
 bool dvi__density_start(dvi_scene *scene, double *U, double *rate);
 
+/* Interpolate functions of[components], which may be NULL, into U [components*functions]. */
+dvi_status dvi__density_interpolate(const struct dvi__scene_density *s, dvi__local *const *of,
+                                    double *U);
+
+/* List the parts of the density, at most DVI__DENSITY_CLASSES. Returns how many they are. */
+int dvi__density_parts(const struct dvi__scene_density *s, dvi_density_part *part);
+
 /* Declare the probes as what is watched. */
 bool dvi__density_make_probes(dvi_scene *scene);
+
+/* ---- marches ---- */
+
+/* Tell why there is no lattice, with the section to blame. NULL if there is one. */
+const char *dvi__lattice_refused(const dvi_scene *scene, const char **section);
+
+/* Tell if short steps of the method tend to the motion of the scene's system, which has the mass of
+ * the space. */
+bool dvi__lattice_is_semidiscrete(const dvi_scene *scene, const char *method);
+
+/* Find shifts and turns of the fields that leave the density as it is. */
+bool dvi__lattice_find_symmetries(dvi_scene *scene);
+
+/* Create and start a march on the lattice, and measure its laws. */
+dvi_status dvi__lattice_march(const dvi_scene *scene, const dvi_march_options *options,
+                              dvi_march **march);
+dvi_status dvi__lattice_laws(const dvi_scene *scene, const dvi_march_options *options, int steps,
+                             dvi_law *law, int *count);
+
+/* Do the same for Schroedinger's equation. dvi__equation_order gives the order of a method. */
+bool dvi__equation_marches(const dvi_scene *scene, const char *method);
+int dvi__equation_order(const char *method);
+const char *dvi__equation_refused(const dvi_scene *scene, const char **section);
+/* Refuse a ground state of which there is none. */
+bool dvi__equation_check_ground(dvi_scene *scene);
+dvi_status dvi__equation_march(const dvi_scene *scene, const dvi_march_options *options,
+                               dvi_march **march);
+dvi_status dvi__equation_laws(const dvi_scene *scene, const dvi_march_options *options, int steps,
+                              dvi_law *law, int *count);
 
 #endif

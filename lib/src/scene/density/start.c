@@ -54,34 +54,22 @@ static int start_at(int64_t count, const double *x, double *f, void *user)
   return dvi__local_value(user, count, 0, x, f);
 }
 
-/* Complain of a start that has no value somewhere, at the part of the expression that has none. */
-static bool complain(dvi_scene *scene, dvi_status status)
+dvi_status dvi__density_interpolate(const struct dvi__scene_density *s, dvi__local *const *of,
+                                    double *U)
 {
-  dvi__span span;
-  const char *words;
-  if (status == DVI_CALLBACK_FAILED && dvi__fault_status() != DVI_OK) status = dvi__fault_status();
-  if (status == DVI_NO_MEMORY) return dvi__scene_no_memory(scene);
-  if (dvi__fault_place(&span, &words))
-    return dvi__complain(scene->complaint, DVI_NOT_FINITE, span, "at the start: %s", words);
-  return dvi__complain(scene->complaint, status, dvi__tree_find(scene->tree, "initial")->span,
-                       "at the start: %s", dvi_last_error());
-}
-
-static bool interpolate(dvi_scene *scene, dvi__local *const *start, double *U)
-{
-  const struct dvi__scene_density *s = scene->density;
-  for (int c = 0; c < s->jets.components && start != NULL; c++) {
-    if (start[c] == NULL || start[c]->term == NULL) continue;
-    const dvi_status status = dvi_space_interpolate(s->space, start_at, start[c],
-                                                    U + c * s->functions);
-    if (status != DVI_OK) return complain(scene, status);
-  }
-  return true;
+  dvi_status status = DVI_OK;
+  for (int c = 0; c < s->jets.components && of != NULL && status == DVI_OK; c++)
+    if (of[c] != NULL && of[c]->term != NULL)
+      status = dvi_space_interpolate(s->space, start_at, of[c], U + c * s->functions);
+  return status;
 }
 
 bool dvi__density_start(dvi_scene *scene, double *U, double *rate)
 {
+  const struct dvi__scene_density *s = scene->density;
   dvi__fault_clear();
-  return interpolate(scene, scene->density->start, U) &&
-         interpolate(scene, scene->density->start_rate, rate);
+  dvi_status status = dvi__density_interpolate(s, s->start, U);
+  if (status == DVI_OK) status = dvi__density_interpolate(s, s->start_rate, rate);
+  return status == DVI_OK ||
+         dvi__density_complain(scene, dvi__tree_find(scene->tree, "initial"), status);
 }

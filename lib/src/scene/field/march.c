@@ -8,9 +8,10 @@
 
 int dvi_scene_marches(const dvi_scene *scene, const char *method)
 {
-  if (scene == NULL || scene->field == NULL) return 0;
+  if (scene == NULL || (scene->field == NULL && scene->density == NULL)) return 0;
   if (method == NULL) method = scene->plan.method;
   if (method == NULL) return 0;
+  if (scene->density != NULL) return dvi__density_marches(scene, method);
   const size_t length = strcspn(method, ":");
   const char *name;
   for (int i = 0; (name = dvi_march_method_name(i)) != NULL; i++)
@@ -75,6 +76,7 @@ dvi_status dvi_scene_march_create(const dvi_scene *scene, const dvi_march_option
   if (!dvi_scene_marches(scene, options != NULL ? options->method : NULL)) return DVI_BAD_OPTION;
   if (scene->terms.damping > 0) return DVI_UNSUPPORTED;
   const dvi_march_options all = complete(scene, options);
+  if (scene->density != NULL) return dvi__density_march(scene, &all, march);
   const struct dvi__scene_field *f = scene->field;
   if (f->kind != DVI_CIRCUMCENTRIC && strcmp(all.method, "yee") == 0 &&
       dvi_mesh_kind(f->mesh) == DVI_BOXES)
@@ -85,6 +87,31 @@ dvi_status dvi_scene_march_create(const dvi_scene *scene, const dvi_march_option
   if (status == DVI_OK) status = start(scene, *march);
   if (status != DVI_OK) dvi_march_destroy(march);
   return status;
+}
+
+/* Set q = u and p = -M E of a wave. */
+static dvi_status wave_state(const dvi_field *field, const dvi_march *march, double *q, double *p)
+{
+  const int64_t cells = dvi_march_size(march, DVI_FORM_A);
+  double *u = dvi__heap_take(2 * (size_t)cells, sizeof *u);
+  if (u == NULL) return DVI_NO_MEMORY;
+  double *const E = u + cells;
+  dvi_status status = dvi_march_sample(march, DVI_FORM_A, 0, NULL, u);
+  if (status == DVI_OK && p != NULL) status = dvi_march_sample(march, DVI_FORM_E, 0, NULL, E);
+  for (int64_t i = 0; i < cells; i++) E[i] = -E[i];
+  if (status == DVI_OK) status = dvi_field_project(field, u, E, q, p);
+  dvi__heap_free(u);
+  return status;
+}
+
+dvi_status dvi_scene_march_state(const dvi_scene *scene, const dvi_march *march, double *q,
+                                 double *p)
+{
+  if (scene == NULL || march == NULL || q == NULL) return DVI_BAD_ARGUMENT;
+  if (dvi_march_size(march, DVI_FORM_A) == 0) return DVI_UNSUPPORTED;
+  if (scene->density != NULL) return dvi__density_march_state(scene, march, q, p);
+  const dvi_field *field = dvi_scene_field(scene);
+  return field != NULL ? wave_state(field, march, q, p) : DVI_UNSUPPORTED;
 }
 
 const char *dvi_scene_grid_only(const dvi_scene *scene)

@@ -95,7 +95,8 @@ static bool all_columns(dvi_scene *scene, const dvi__tree *columns)
     int k = 0;
     while (k < count && strcmp(known[k], name) != 0) k++;
     if (k == count && !is_balance(scene, name) && !is_multiplier(scene, name) &&
-        !is_force(scene, name) && !(is_field && dvi__is_mechanical_column(scene, name)))
+        !is_force(scene, name) && !(is_field && dvi__is_mechanical_column(scene, name)) &&
+        !(scene->density != NULL && dvi__density_has_column(scene, name)))
       return dvi__scene_refuse(scene, columns->child[i]->span, "there is no column '%s'%s", name,
                                dvi__nearest_or_all(name, count, known, hint, sizeof hint));
     for (k = 0; k < i; k++)
@@ -121,6 +122,7 @@ static bool read_columns(dvi_scene *scene, const dvi__tree *columns)
   }
   scene->plan.column = column;
   scene->plan.column_count = columns->count;
+  scene->plan.usual_columns = 0;
   return all_columns(scene, columns);
 }
 
@@ -136,6 +138,7 @@ bool dvi__choose_field_columns(dvi_scene *scene)
                              : scene->terms.invariants[i - 1 - momenta].name;
   scene->plan.column = column;
   scene->plan.column_count = count;
+  scene->plan.usual_columns = 1;
   return true;
 }
 

@@ -2,6 +2,8 @@
  * how to add one. */
 #ifndef DVI_SCENE_SECTIONS_SECTIONS_H
 #define DVI_SCENE_SECTIONS_SECTIONS_H
+#include <dvi/march.h>
+
 #include "scene/elaborate/context.h"
 
 /* Read the whole scene from its tree, that is names, terms, start and plan. Its system is made
@@ -74,9 +76,19 @@ bool dvi__is_of_field(const dvi_scene *scene);
 bool dvi__density_take_mesh(dvi_scene *scene, const dvi__tree *section, dvi_mesh *mesh);
 bool dvi__density_read_boundary(dvi_scene *scene, const dvi__tree *section);
 bool dvi__density_read_start(dvi_scene *scene, const dvi__tree *section);
+bool dvi__density_read_solve(dvi_scene *scene, const dvi__tree *section);
 bool dvi__density_read_probes(dvi_scene *scene, const dvi__tree *section);
-const dvi_mesh *dvi__density_mesh(const dvi_scene *scene);
+const dvi_mesh *dvi__density_mesh(dvi_scene *scene);
 void dvi__scene_density_clear(dvi_scene *scene);
+
+/* Do for a density what functions of dvi/scene.h do for a field. */
+bool dvi__density_marches(const dvi_scene *scene, const char *method);
+dvi_status dvi__density_march(const dvi_scene *scene, const dvi_march_options *options,
+                              dvi_march **march);
+dvi_status dvi__density_march_state(const dvi_scene *scene, const dvi_march *march, double *q,
+                                    double *p);
+/* Tell if a march of a density may show a column. */
+bool dvi__density_has_column(const dvi_scene *scene, const char *name);
 
 /* Let a run show energy, momenta, and what else is watched. */
 bool dvi__choose_field_columns(dvi_scene *scene);

@@ -197,6 +197,13 @@ void dvi__preconditioner_iterate(dvi__action *action, double *change, double *la
 /* Take the part of K out of the forces g [n*r] at the nodes Q. */
 void dvi__preconditioner_other_forces(const dvi__action *action, double *g);
 
+/* Do the same for members side by side, with the bits of one alone (members.h). The last function
+ * takes the part of K out of the forces kept. */
+struct dvi__action_members;
+void dvi__preconditioner_begin_members(struct dvi__action_members *members);
+void dvi__preconditioner_iterate_members(struct dvi__action_members *members);
+void dvi__preconditioner_other_forces_of_members(struct dvi__action_members *members);
+
 /* Free the memory of dvi__action_prepare_energy. */
 void dvi__action_clear_energy(dvi__action *action);
 

@@ -34,6 +34,9 @@ int dvi__action_has_fixed_point(const dvi__action *action);
 /* Tell whether the iteration takes quadratic potentials implicitly (preconditioner.c). */
 int dvi__action_has_preconditioner(const dvi__action *action);
 
+/* Keep the inverses of `count` lengths of steps, instead of one. DVI_NO_MEMORY. */
+dvi_status dvi__action_keep_lengths(dvi__action *action, int count);
+
 /* Put the nodes on the path Y. With a preconditioner they are put on the motion
  * by its potentials alone. */
 void dvi__action_fixed_point_begin(dvi__action *action, const double *Y);

@@ -30,6 +30,12 @@ static int members_allocate(dvi__action_members *m, size_t capacity)
     }
     complete = complete && m->kinetic != NULL;
   }
+  if (m->action->preconditioner != NULL) {
+    m->rest = DVI_NEW(double, n *r *capacity);
+    m->moved = DVI_NEW(double, n *r *capacity);
+    m->kept_Q = DVI_NEW(double, n *r *capacity);
+    complete = complete && m->rest && m->moved && m->kept_Q;
+  }
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     *rows[i] = DVI_NEW(double, n *capacity);
     complete = complete && *rows[i] != NULL;
@@ -66,6 +72,9 @@ void dvi__action_members_clear(dvi__action_members *m)
                            m->dq_low,
                            m->dp,
                            m->kinetic,
+                           m->rest,
+                           m->moved,
+                           m->kept_Q,
                            m->batch[0],
                            m->batch[1],
                            m->batch[2],
@@ -112,7 +121,10 @@ static void members_put_nodes(dvi__action_members *m, double ratio)
   dvi__members_product(a->n, a->fixed_point.stages, a->fixed_point.lanes, a->fixed_point.stages,
                        dvi__action_fixed_point_shift(a, ratio), m->width, m->forces, m->Z);
   const dvi__members_fixed_point iteration = members_fixed_point(m);
-  dvi__members_begin(&iteration);
+  if (a->preconditioner != NULL)
+    dvi__preconditioner_begin_members(m);
+  else
+    dvi__members_begin(&iteration);
 }
 
 void dvi__action_members_place(dvi__action_members *m, int count, double h, double last_h,
@@ -192,7 +204,10 @@ dvi_status dvi__action_members_iterate(dvi__action_members *m)
                              : dvi__potentials_gradient(m->evaluator, m->action->r * m->width, m->t,
                                                         m->Q, m->force));
   const dvi__members_fixed_point iteration = members_fixed_point(m);
-  dvi__members_iterate(&iteration);
+  if (m->action->preconditioner != NULL)
+    dvi__preconditioner_iterate_members(m);
+  else
+    dvi__members_iterate(&iteration);
   return DVI_OK;
 }
 
@@ -202,6 +217,8 @@ void dvi__action_members_keep(dvi__action_members *m, int lane)
                count = (size_t)m->count;
   double *kept = m->forces + m->member[lane];
   for (size_t i = 0; i < rows; i++) kept[i * count] = m->force[members_row(m, i) + (size_t)lane];
+  for (size_t i = 0; i < rows && m->kept_Q != NULL; i++)
+    m->kept_Q[i * count + (size_t)m->member[lane]] = m->Q[members_row(m, i) + (size_t)lane];
 }
 
 /* Take g and a of all members apart, with p0 - sum_j a_j. */
@@ -245,4 +262,5 @@ void dvi__action_members_ends(dvi__action_members *m, double *Y)
                                             .moved = m->dq,
                                             .low = m->dq_low,
                                             .sum = m->dp});
+  if (a->preconditioner != NULL) dvi__preconditioner_other_forces_of_members(m);
 }

@@ -32,6 +32,9 @@ typedef struct dvi__action_members {
   /* With a vector potential, batches of places, velocities, V_q and A [n*r*width], and p0 - sum_j
    * a_j [n*count], else NULL. */
   double *batch[4], *kinetic;
+  /* With a preconditioner Phi(Z) - Z and its product with the inverse [n*r*width], and the places
+   * of each member's last iteration [n*r*count], else NULL. */
+  double *rest, *moved, *kept_Q;
 } dvi__action_members;
 
 /* Create the lanes of up to `capacity` members, for an element with a fixed-point iteration. */
@@ -60,7 +63,8 @@ dvi_status dvi__action_members_iterate(dvi__action_members *members);
 void dvi__action_members_keep(dvi__action_members *members, int lane);
 
 /* Give the unknowns Y [n*s*count] and the increments dq + dq_low, dp of all members from the forces
- * kept. The numbers of members without kept forces mean nothing. */
+ * kept, which then lose the part of a preconditioner's potentials, as those of dvi__action_forces.
+ * The numbers of members without kept forces mean nothing. */
 void dvi__action_members_ends(dvi__action_members *members, double *Y);
 
 #endif

@@ -12,7 +12,8 @@
  * fixed_point.h. The inverse decides how fast they are solved, and no more. At the end g_j gets the
  * change of the linear forces with the last change of Z. What is left of it is the other forces'.
  *
- * The inverses are kept from step to step as long as h stays. Coordinates with equal k/m share
+ * The inverses are kept from step to step as long as h stays, for a composition those of all of its
+ * lengths. Coordinates with equal k/m share
  * one, and those with k <= 0 have none. Source: Hairer, Lubich and Wanner 2006, sec. VIII.6. */
 #include "step/element/action_struct.h"
 
@@ -23,7 +24,10 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "num/simd/lanes.h"
+#include "num/simd/members.h"
+#include "num/simd/wide.h"
 #include "step/element/fixed_point.h"
+#include "step/element/members.h"
 #include "system/term/term.h"
 
 struct dvi__preconditioner {
@@ -33,10 +37,14 @@ struct dvi__preconditioner {
   int *place;        /* [n] place of each coordinate's k/m among these, or -1 */
   double *B;         /* [r*r] by rows */
   double *row_sum;   /* [r] of B */
-  double *inverse;   /* [inverses*r*lanes] by columns */
-  double *matrix;    /* [r*2r] work of an inverse, by rows */
-  double *rest;      /* [n*r] Phi(Z) - Z */
-  double *moved;     /* [n*lanes] its product with the inverse */
+  /* inverses [inverses*r*lanes] by columns of some h, one after the other; their h, 0 if not made;
+   * the one to be replaced next, and the one in use */
+  int lengths, oldest;
+  double *inverse, *length;
+  const double *in_use;
+  double *matrix; /* [r*2r] work of an inverse, by rows */
+  double *rest;   /* [n*r] Phi(Z) - Z */
+  double *moved;  /* [n*lanes] its product with the inverse */
 };
 
 int dvi__action_has_preconditioner(const dvi__action *a)
@@ -147,18 +155,39 @@ static dvi_status no_memory(const dvi__action *a)
   return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d nodes in %d dimensions", a->r, a->n);
 }
 
+static size_t inverse_size(const dvi__action *a)
+{
+  return (size_t)a->r * (size_t)a->fixed_point.lanes;
+}
+
+static size_t size_of_length(const dvi__action *a)
+{
+  return (size_t)a->preconditioner->inverses * inverse_size(a);
+}
+
+dvi_status dvi__action_keep_lengths(dvi__action *a, int count)
+{
+  struct dvi__preconditioner *p = a->preconditioner;
+  if (p == NULL) return DVI_OK;
+  dvi__release(p->inverse);
+  dvi__release(p->length);
+  p->inverse = DVI_NEW(double, (size_t)count *size_of_length(a));
+  p->length = DVI_NEW(double, count);
+  p->lengths = count;
+  return p->inverse && p->length ? DVI_OK : no_memory(a);
+}
+
 static dvi_status allocate_numbers(dvi__action *a)
 {
   struct dvi__preconditioner *p = a->preconditioner;
   const size_t n = (size_t)a->n, r = (size_t)a->r, lanes = (size_t)a->fixed_point.lanes;
   p->B = DVI_NEW(double, r *r);
   p->row_sum = DVI_NEW(double, r);
-  p->inverse = DVI_NEW(double, (size_t)p->inverses *r *lanes);
   p->matrix = DVI_NEW(double, 2 * r * r);
   p->rest = DVI_NEW(double, n *r);
   p->moved = DVI_NEW(double, n *lanes);
-  return p->B && p->row_sum && p->inverse && p->matrix && p->rest && p->moved ? DVI_OK
-                                                                              : no_memory(a);
+  if (!p->B || !p->row_sum || !p->matrix || !p->rest || !p->moved) return no_memory(a);
+  return dvi__action_keep_lengths(a, 1);
 }
 
 dvi_status dvi__action_prepare_preconditioner(dvi__action *a)
@@ -185,8 +214,8 @@ void dvi__action_clear_preconditioner(dvi__action *a)
 {
   struct dvi__preconditioner *p = a->preconditioner;
   if (p == NULL) return;
-  double *const owned[] = {p->stiffness, p->ratio,  p->B,    p->row_sum,
-                           p->inverse,   p->matrix, p->rest, p->moved};
+  double *const owned[] = {p->stiffness, p->ratio,  p->B,    p->row_sum, p->inverse,
+                           p->length,    p->matrix, p->rest, p->moved};
   for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) dvi__release(owned[i]);
   dvi__release(p->place);
   dvi__release(p);
@@ -251,16 +280,25 @@ static void invert(const dvi__action *a, double z, double *inverse)
       inverse[j * a->fixed_point.lanes + i] = regular ? p->matrix[i * 2 * r + r + j] : i == j;
 }
 
-static size_t inverse_size(const dvi__action *a)
+static void make_inverses(const dvi__action *a, double *inverse)
 {
-  return (size_t)a->r * (size_t)a->fixed_point.lanes;
+  const struct dvi__preconditioner *p = a->preconditioner;
+  for (size_t k = 0; k < (size_t)p->inverses; k++)
+    invert(a, a->h * a->h * p->ratio[k], inverse + k * inverse_size(a));
 }
 
 void dvi__preconditioner_set_step(dvi__action *a)
 {
   struct dvi__preconditioner *p = a->preconditioner;
-  for (size_t k = 0; k < (size_t)p->inverses; k++)
-    invert(a, a->h * a->h * p->ratio[k], p->inverse + k * inverse_size(a));
+  int k = 0;
+  while (k < p->lengths && p->length[k] != a->h) k++;
+  if (k == p->lengths) {
+    k = p->oldest;
+    p->oldest = k + 1 < p->lengths ? k + 1 : 0;
+    p->length[k] = a->h;
+    make_inverses(a, p->inverse + (size_t)k * size_of_length(a));
+  }
+  p->in_use = p->inverse + (size_t)k * size_of_length(a);
 }
 
 /* ---- iterations ---- */
@@ -286,7 +324,7 @@ static void multiply_by_inverses(const dvi__action *a, double *product)
       pad_rows(a, next - i, from, to);
     else
       dvi__lanes_product(next - i, a->r, a->fixed_point.lanes, a->fixed_point.lanes,
-                         p->inverse + (size_t)p->place[i] * inverse_size(a), from, to);
+                         p->in_use + (size_t)p->place[i] * inverse_size(a), from, to);
   }
 }
 
@@ -352,4 +390,113 @@ void dvi__preconditioner_other_forces(const dvi__action *a, double *g)
   for (size_t i = 0; i < (size_t)a->n; i++)
     for (size_t j = 0; j < r && p->place[i] >= 0; j++)
       g[i * r + j] += a->h * a->weight[j] * (p->stiffness[i] * a->fixed_point.Q[i * r + j]);
+}
+
+/* ---- members side by side ---- */
+
+static size_t members_at(const dvi__action_members *m, size_t i, size_t j)
+{
+  return (i * (size_t)m->action->r + j) * (size_t)m->width;
+}
+
+/* Find `rest` from sums of forces, for Z or what stands in its place. */
+WIDE static void find_rest(const dvi__action_members *m, const double *sums,
+                           const double *restrict before, double *restrict rest)
+{
+  const dvi__action *a = m->action;
+  const size_t width = (size_t)m->width;
+  for (size_t i = 0; i < (size_t)a->n; i++)
+    for (size_t j = 0; j < (size_t)a->r; j++) {
+      const size_t at = members_at(m, i, j);
+      const double c = a->fixed_point.node[j], factor = a->fixed_point.factor[i];
+      const double *start = m->start + i * width, *low = m->low + i * width;
+      for (size_t k = 0; k < width; k++)
+        rest[at + k] = (start[k] * c + (factor * sums[at + k] + low[k] * c)) - before[at + k];
+    }
+}
+
+static void multiply_members(const dvi__action_members *m, double *product)
+{
+  const dvi__action *a = m->action;
+  const struct dvi__preconditioner *p = a->preconditioner;
+  const size_t row = (size_t)a->r * (size_t)m->width;
+  for (size_t i = 0; i < (size_t)a->n; i++)
+    if (p->place[i] < 0)
+      memcpy(product + i * row, m->rest + i * row, row * sizeof(double));
+    else
+      dvi__members_product(1, a->r, a->fixed_point.lanes, a->r,
+                           p->in_use + (size_t)p->place[i] * inverse_size(a), m->width,
+                           m->rest + i * row, product + i * row);
+}
+
+/* Z holds the pull of K at q0 in the meantime. */
+void dvi__preconditioner_begin_members(dvi__action_members *m)
+{
+  const dvi__action *a = m->action;
+  const struct dvi__preconditioner *p = a->preconditioner;
+  const size_t n = (size_t)a->n, r = (size_t)a->r, width = (size_t)m->width;
+  memcpy(m->moved, m->Z, n * r * width * sizeof(double));
+  for (size_t i = 0; i < n; i++) {
+    const double strength = a->fixed_point.factor[i] * a->h * fmax(p->stiffness[i], 0);
+    for (size_t j = 0; j < r; j++)
+      for (size_t k = 0; k < width; k++)
+        m->Z[members_at(m, i, j) + k] = strength * m->origin[i * width + k] * p->row_sum[j];
+  }
+  find_rest(m, m->moved, m->Z, m->rest);
+  multiply_members(m, m->Z);
+  for (size_t i = 0; i < n; i++)
+    for (size_t j = 0; j < r; j++)
+      for (size_t k = 0; k < width; k++)
+        m->Q[members_at(m, i, j) + k] = m->origin[i * width + k] + m->Z[members_at(m, i, j) + k];
+}
+
+/* Move stage j of coordinate i of all members. A change that is NaN counts as infinite. */
+WIDE static void move_members(const dvi__action_members *m, size_t i, size_t j, double stiffness,
+                              double *restrict change, double *restrict largest)
+{
+  const size_t width = (size_t)m->width, at = members_at(m, i, j);
+  const double weight = m->action->fixed_point.weight[j], *origin = m->origin + i * width,
+               *moved = m->moved + at;
+  double *restrict Z = m->Z + at, *restrict Q = m->Q + at, *restrict g = m->force + at;
+  for (size_t k = 0; k < width; k++) {
+    Z[k] += moved[k];
+    Q[k] = origin[k] + Z[k];
+    g[k] += weight * (stiffness * moved[k]);
+    const double by = fabs(moved[k]), now = fabs(Z[k]);
+    change[k] = by <= change[k] ? change[k] : by == by ? by : HUGE_VAL;
+    largest[k] = now > largest[k] ? now : largest[k];
+  }
+}
+
+void dvi__preconditioner_iterate_members(dvi__action_members *m)
+{
+  const dvi__action *a = m->action;
+  const struct dvi__preconditioner *p = a->preconditioner;
+  const size_t n = (size_t)a->n, r = (size_t)a->r, width = (size_t)m->width;
+  for (size_t i = 0; i < n; i++)
+    for (size_t j = 0; j < r; j++)
+      for (size_t k = 0; k < width; k++)
+        m->force[members_at(m, i, j) + k] *= a->fixed_point.weight[j];
+  dvi__members_product(a->n, a->r, a->fixed_point.lanes, a->r, a->fixed_point.matrix, m->width,
+                       m->force, m->moved);
+  find_rest(m, m->moved, m->Z, m->rest);
+  multiply_members(m, m->moved);
+  memset(m->change, 0, width * sizeof(double));
+  memset(m->largest, 0, width * sizeof(double));
+  for (size_t i = 0; i < n; i++)
+    for (size_t j = 0; j < r; j++)
+      move_members(m, i, j, p->place[i] >= 0 ? p->stiffness[i] : 0, m->change, m->largest);
+}
+
+void dvi__preconditioner_other_forces_of_members(dvi__action_members *m)
+{
+  const dvi__action *a = m->action;
+  const struct dvi__preconditioner *p = a->preconditioner;
+  const size_t r = (size_t)a->r, count = (size_t)m->count;
+  for (size_t i = 0; i < (size_t)a->n; i++)
+    for (size_t j = 0; j < r && p->place[i] >= 0; j++)
+      for (size_t k = 0; k < count; k++) {
+        const size_t at = (i * r + j) * count + k;
+        m->forces[at] += a->h * a->weight[j] * (p->stiffness[i] * m->kept_Q[at]);
+      }
 }

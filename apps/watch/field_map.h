@@ -1,0 +1,39 @@
+/** The map of a field on a line over space and time, drawn from a run. */
+#ifndef FIELD_MAP_H
+#define FIELD_MAP_H
+#include <dvi/march.h>
+
+#include "load/quantity.h"
+#include "plot/space_map.h"
+
+/** A map so far. All zero without one. */
+typedef struct field_map {
+  const problem *scene;
+  const char *path; /**< NULL without a map */
+  const char *axis;
+  quantity shown; /**< of a density. Without one it is u, the field's values at vertices */
+  space_map map;
+  double *x;         /**< [width] */
+  double *q, *p, *v; /**< a state, and its velocities */
+  double *U, *rate;  /**< coefficients and rates of a density's fields, or values at vertices */
+  int64_t vertices;  /**< of the mesh of a field without a density, else 0 */
+  int *order;        /**< [vertices] along the axis */
+  double *place, *ascend; /**< [vertices] places along the axis, and values */
+} field_map;
+
+/** Prepare a map of a quantity, by default that of quantity_choose, or no map if the path is NULL.
+ * Returns DONE, or complains that the field is on no line, and returns the exit code. Call
+ * field_map_clear afterwards in any case. */
+int field_map_start(field_map *map, const problem *scene, const char *path, const char *quantity);
+void field_map_clear(field_map *map);
+
+/** Offer the state of a mechanical method. Complains and returns false if it cannot be shown. */
+bool field_map_add_state(field_map *map, double t, const double *q, const double *p);
+
+/** Offer the state of a march. */
+bool field_map_add_march(field_map *map, const dvi_march *march);
+
+/** Draw the map, if there is one, and say what it shows. Complains and returns false if it cannot
+ * be written. */
+bool field_map_draw(const field_map *map);
+#endif

@@ -1,0 +1,23 @@
+/* What is shown of fields with a density: their names, and a mesh for values. */
+#include "scene/density/scene_density.h"
+#include "scene/sections/sections.h"
+
+int dvi_scene_declared_of(const dvi_scene *scene, int i, dvi_scene_declared *field)
+{
+  if (dvi_scene_density(scene) == NULL || i < 0 || i >= scene->density->fields || field == NULL)
+    return 0;
+  const dvi__declared_field *declared = scene->density->field + i;
+  *field = (dvi_scene_declared){.name = declared->name,
+                                .first = declared->first,
+                                .components = declared->components,
+                                .is_complex = declared->is_complex};
+  return 1;
+}
+
+const dvi_mesh *dvi__density_mesh(dvi_scene *scene)
+{
+  struct dvi__scene_density *s = scene->density;
+  if (s == NULL || s->mesh != NULL || s->space == NULL) return s != NULL ? s->mesh : NULL;
+  if (s->shown == NULL) (void)dvi_space_mesh(s->space, &s->shown);
+  return s->shown;
+}
