@@ -500,7 +500,7 @@ double dvi_integrator_supplied(const dvi_integrator *I, int i)
 
 dvi_status dvi_integrator_balance(dvi_integrator *I, int i, double *defect)
 {
-  double now;
+  double now = 0;
   if (I == NULL || defect == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "balance: an argument is NULL");
   if (I->balances == 0)
