@@ -26,8 +26,11 @@ static bool read_parts(dvi_scene *scene, const dvi__tree *section,
   if (!dvi__context_make(&c, scene, DVI__MENTIONS_Q | DVI__MENTIONS_V | DVI__MENTIONS_T,
                          "a density"))
     return false;
-  const bool good = read(&c, section, &node) && dvi__density_sort(&c, node) &&
-                    (scene->density->moving == NULL || dvi__moving_take_density(&c, node));
+  const struct dvi__scene_density *s = scene->density;
+  const bool good = read(&c, section, &node) &&
+                    (s->jets.is_rotation ? dvi__rotations_take_density(&c, node)
+                                         : dvi__density_sort(&c, node)) &&
+                    (s->moving == NULL || dvi__moving_take_density(&c, node));
   dvi__context_free(&c);
   return good;
 }
@@ -232,7 +235,7 @@ static bool choose_step(dvi_scene *scene)
   double omega = 0;
   dvi_scene_plan *plan = &scene->plan;
   if (!(plan->fraction > 0)) return true;
-  const dvi_status status = scene->density->moving != NULL
+  const dvi_status status = scene->density->density == NULL
                                 ? DVI_UNSUPPORTED
                                 : dvi_density_fastest(scene->density->density, &omega);
   if (status != DVI_OK || !(omega > 0))
@@ -256,10 +259,12 @@ static void set_form(dvi_scene *scene)
     scene->mass = mass->diagonal != NULL ? "diagonal" : mass->values != NULL ? "sparse" : "scalar";
 }
 
-/* Make the field on a mesh that moves. */
-static bool make_moving(dvi_scene *scene)
+/* Make a field that has no space. */
+static bool make_other(dvi_scene *scene)
 {
-  const bool good = check_motion(scene) && dvi__moving_make(scene) &&
+  const bool good = check_motion(scene) &&
+                    (scene->density->moving != NULL ? dvi__moving_make(scene)
+                                                    : dvi__rotations_make(scene)) &&
                     dvi__density_make_probes(scene) && dvi__choose_field_columns(scene) &&
                     choose_step(scene);
   scene->jets = NULL;
@@ -268,7 +273,7 @@ static bool make_moving(dvi_scene *scene)
 
 static bool make(dvi_scene *scene)
 {
-  if (scene->density->moving != NULL) return make_moving(scene);
+  if (scene->density->moving != NULL || scene->density->jets.is_rotation) return make_other(scene);
   dvi__fault_clear();
   if (!dvi__density_read_final(scene) || !check_motion(scene) || !dvi__density_make_space(scene) ||
       !check_orders(scene))
@@ -301,6 +306,7 @@ void dvi__scene_density_clear(dvi_scene *scene)
 {
   if (scene->density == NULL) return;
   dvi__moving_clear(scene);
+  dvi__rotations_clear(scene);
   if (scene->density->equation != NULL) dvi_schroedinger_destroy(&scene->density->equation->made);
   dvi_density_destroy(&scene->density->density);
   dvi_space_destroy(&scene->density->space);

@@ -69,7 +69,7 @@ static bool check_domain(dvi_scene *scene, const dvi__tree *section)
       (strstr(s->axis[0].kind, "degree=") != NULL && strstr(s->axis[0].kind, "degree=1") == NULL))
     return refuse(scene, space != NULL ? space : section,
                   "cells that move are linear: 'space' is 'fem:degree=1,cells=100' there");
-  return s->jets.components <= DVI_MOVING_COMPONENTS_MAX ||
+  return (s->jets.components <= DVI_MOVING_COMPONENTS_MAX && !s->jets.is_rotation) ||
          refuse(scene, section, "on a mesh that moves there are 4 components of fields at most");
 }
 

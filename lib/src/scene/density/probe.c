@@ -90,6 +90,10 @@ bool dvi__density_read_probes(dvi_scene *scene, const dvi__tree *section)
 {
   struct dvi__scene_density *s = scene->density;
   if (!dvi__want_mapping(scene, section, "probes")) return false;
+  if (s->jets.is_rotation)
+    return dvi__scene_refuse(scene, section->span,
+                             "fields of rotations have no probes; the columns of a run have the "
+                             "entries of the rotation of each node");
   s->probe = dvi__arena_take(&scene->arena, (size_t)section->count + 1, sizeof *s->probe);
   if (s->probe == NULL) return dvi__scene_no_memory(scene);
   for (int i = 0; i < section->count; i++)

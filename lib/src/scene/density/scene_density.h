@@ -35,6 +35,10 @@ enum { DVI__OF_FIELD = DVI__MENTIONS_V };
 bool dvi__local_read(dvi_scene *scene, const dvi__tree *tree, unsigned may, const char *where,
                      int count, dvi__local **local);
 
+/* Read a matrix of 3 x 3 functions of position. */
+bool dvi__local_read_matrix(dvi_scene *scene, const dvi__tree *tree, const char *where,
+                            dvi__local **local);
+
 /* Read the derivative of a function of position along an axis. */
 bool dvi__local_read_slope(dvi_scene *scene, const dvi__tree *tree, int axis, const char *where,
                            int count, dvi__local **local);
@@ -54,11 +58,15 @@ int dvi__local_rates(const dvi__local *local, int64_t count, double t, const dou
 
 /* ---- the scene ---- */
 
+/* Components of a field of rotations, nine entries and a turn. */
+enum { DVI__TURN_COMPONENTS = 12 };
+
 /* A field as it is declared, components `first` to first + components - 1. */
 typedef struct dvi__declared_field {
   const char *name;
   dvi__span span;
   bool is_complex, is_vector; /* a complex field is a vector of two */
+  bool is_rotation;           /* dvi__jets tells what its components are */
   int first, components;
 } dvi__declared_field;
 
@@ -75,6 +83,9 @@ enum { DVI__DENSITY_CLASSES = DVI_DENSITY_GENERAL + 1 };
 
 /* A mesh that moves, and what moves it. */
 typedef struct dvi__scene_moving dvi__scene_moving;
+
+/* A field of rotations (rotations.c). */
+typedef struct dvi__scene_rotations dvi__scene_rotations;
 
 struct dvi__scene_density {
   dvi__jets jets;
@@ -106,9 +117,10 @@ struct dvi__scene_density {
   int64_t functions;
   dvi_multisymplectic_symmetry *symmetry; /* [symmetries] of a march on a lattice */
   int symmetries;
-  struct dvi__equation *equation; /* NULL without the section schroedinger */
-  dvi__scene_moving *moving;      /* or NULL */
-  double ground;                  /* norm of the ground state that is asked for, or 0 */
+  struct dvi__equation *equation;  /* NULL without the section schroedinger */
+  dvi__scene_moving *moving;       /* or NULL */
+  dvi__scene_rotations *rotations; /* or NULL */
+  double ground;                   /* norm of the ground state that is asked for, or 0 */
 };
 
 /* Read the section final, if there is one, and make the end of it. */
@@ -205,5 +217,15 @@ int dvi__moving_value(const dvi_scene *scene, const dvi__local *function, double
                       double x, double *value);
 int dvi__moving_integral(const dvi_scene *scene, const dvi__local *function, double t,
                          const double *q, double *value);
+
+/* ---- fields of rotations (rotations.c) ---- */
+
+/* Read the start, R and omega(R). */
+bool dvi__rotations_read_start(dvi_scene *scene, const dvi__tree *section);
+
+/* Take a density apart, and make the field, its unknowns and its start. */
+bool dvi__rotations_take_density(dvi__context *c, dvi__node root);
+bool dvi__rotations_make(dvi_scene *scene);
+void dvi__rotations_clear(dvi_scene *scene);
 
 #endif
