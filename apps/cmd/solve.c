@@ -169,19 +169,52 @@ static int tell_state(const solve_request *r, const problem *scene, const dvi_de
   return status == DVI_OK ? DONE : library_error(status);
 }
 
-static int solve_density(const solve_request *r, const problem *scene, const dvi_density *density)
+/* ---- ground states ---- */
+
+/* Print the norm and mu, and what is watched of the state, the energy first. */
+static dvi_status tell_ground(const solve_request *r, const problem *scene, double mu,
+                              const double *U)
+{
+  FILE *stream = r->csv != NULL && strcmp(r->csv, "-") == 0 ? stderr : stdout;
+  (void)fprintf(stream, "Ground state of %s\n", scene->name);
+  (void)fprintf(stream, "%-10s %.12g\n", "norm", dvi_scene_ground_norm(scene->scene));
+  (void)fprintf(stream, "%-10s %.12g\n", "mu", mu);
+  const dvi_status status = print_watched(stream, scene, density_of(scene), U);
+  return status == DVI_OK ? print_ranges(stream, scene, density_of(scene), U) : status;
+}
+
+/* The state is real. Its imaginary part stays as it is, 0. */
+static int solve_ground(const solve_request *r, const problem *scene, double *U)
+{
+  const dvi_schroedinger *equation = dvi_scene_schroedinger(scene->scene);
+  double mu = 0;
+  if (equation == NULL) return library_error(DVI_UNSUPPORTED);
+  dvi_status status = dvi_schroedinger_ground(equation, dvi_scene_ground_norm(scene->scene), &mu,
+                                              NULL, U);
+  if (status == DVI_OK) status = tell_ground(r, scene, mu, U);
+  return status == DVI_OK ? DONE : library_error(status);
+}
+
+static int solve_static(const solve_request *r, const problem *scene, double *U)
 {
   const double *q, *v, *p;
+  const dvi_density *density = density_of(scene);
   dvi_field_solve_report report = {0};
+  dvi_scene_start(scene->scene, &q, &v, &p);
+  dvi_status status = dvi_density_lift(density, 0, q, U);
+  if (status == DVI_OK) status = dvi_density_solve(density, U, &report);
+  return status == DVI_OK ? tell_state(r, scene, density, U, &report) : library_error(status);
+}
+
+static int solve_density(const solve_request *r, const problem *scene, const dvi_density *density)
+{
   double *U = calloc((size_t)density_coefficients(density), sizeof *U);
   if (U == NULL) {
     complain("out of memory");
     return FAILED;
   }
-  dvi_scene_start(scene->scene, &q, &v, &p);
-  dvi_status status = dvi_density_lift(density, 0, q, U);
-  if (status == DVI_OK) status = dvi_density_solve(density, U, &report);
-  int code = status == DVI_OK ? tell_state(r, scene, density, U, &report) : library_error(status);
+  int code = dvi_scene_ground_norm(scene->scene) > 0 ? solve_ground(r, scene, U)
+                                                     : solve_static(r, scene, U);
   if (code == DONE && r->csv != NULL) code = density_write(scene, r->csv, 1, U);
   if (code == DONE && r->vtu != NULL) code = density_view(scene, r->vtu, 1, U);
   free(U);
@@ -198,9 +231,11 @@ static const char *const details[] = {
     "with a = eps, and the charges as the source. What is static of 'field: maxwell' is what a run "
     "with losses tends to.\n",
     "The static state of fields with a density (section 'density') is that where the derivatives "
-    "of all parts without rates vanish, found by Newton's method from the scene's start.\n",
-    "Columns of --csv: vertex, its coordinates, u. Of a density: the position of the quadrature "
-    "points, and the value of each component.\n",
+    "of all parts without rates vanish, found by Newton's method from the scene's start. With "
+    "'solve: ground' it is the ground state of the section schroedinger, of norm 1 or that of "
+    "'solve: {ground: NORM}': mu is its chemical potential.\n",
+    "Columns of --csv: vertex, its coordinates, u. Of a density: the position of the vertices, and "
+    "the value of each component and of |psi|^2 of a complex field.\n",
     "Examples:\n"
     "  dvi solve membrane.yaml\n"
     "  dvi solve membrane.yaml --csv values.csv --vtu values.vtu\n",

@@ -77,7 +77,7 @@ START_TEST(sections_of_densities_belong_together)
           ":1:9:", "the section 'fields' is missing");
   section_refused("schroedinger: {}", 15, "beside it there is no other one");
   section_refused("coordinates: {y: scalar}", 1, "has no section 'coordinates'");
-  section_refused("solve: {mean: 1}", 1, "has no section 'solve'");
+  section_refused("solve: {mean: 1}", 8, "asks for a ground state");
 }
 END_TEST
 

@@ -155,13 +155,14 @@ const char *dvi_scene_component(const dvi_scene *scene, int i);
 /** Give field i of a scene with a density, in the order of the file. Returns 0 if there is none. */
 int dvi_scene_declared_of(const dvi_scene *scene, int i, dvi_scene_declared *field);
 
-/** Give the equation of a scene with the section `schroedinger`, whose real and imaginary parts are
- *  the components of its field. Owned by the scene.
- *
- *  @retval DVI_UNSUPPORTED  the scene has no such section, or conditions on its boundary that are
- *                           neither fixed at 0 nor free without a flux
- *  @retval (others)         as dvi_schroedinger_create */
-dvi_status dvi_scene_schroedinger(const dvi_scene *scene, const dvi_schroedinger **equation);
+/** Return Schroedinger's equation of a scene with the section schroedinger, owned by the scene. The
+ *  first call makes it. NULL for other scenes, for those whose boundary has values, fluxes or
+ *  robin, or whose interaction depends on time, and if it cannot be made. */
+const dvi_schroedinger *dvi_scene_schroedinger(const dvi_scene *scene);
+
+/** Return the norm of the ground state that the section solve asks for (dvi_schroedinger_ground). 0
+ *  if it asks for none. */
+double dvi_scene_ground_norm(const dvi_scene *scene);
 
 /** Write what was found in a density and what was built of it, one fact a line: fields, parts by
  *  the summands of the expression, the space, the terms, and how well momenta can be kept. Cut off
@@ -172,7 +173,8 @@ void dvi_scene_density_explain(const dvi_scene *scene, char *text, size_t size);
 int dvi_scene_solve_options(const dvi_scene *scene, dvi_field_solve_options *options);
 
 /** Tell if a method is one of marches, for a scene of a field: those of dvi/march.h and yee, and
- *  for a density multisymplectic (dvi/multisymplectic.h).
+ *  for a density multisymplectic (dvi/multisymplectic.h) and, with the section schroedinger, those
+ *  of dvi/schroedinger.h.
  *
  *  @param method  its specification. NULL for the scene's own
  *  @return 1 if it is, 0 if it is not, or for a scene without a field */
@@ -205,8 +207,8 @@ const char *dvi_scene_march_refused(const dvi_scene *scene, const char *method,
  *  weight exact, and lumped with the weight trapezoid. 0, too, if the method is none of marches. */
 int dvi_scene_march_order(const dvi_scene *scene, const char *method);
 
-/** Measure the laws of a march of the scene's field (dvi_field_laws, dvi_multisymplectic_laws) that
- *  begins at random.
+/** Measure the laws of a march of the scene's field that begins at random: dvi_field_laws,
+ *  dvi_multisymplectic_laws, or the change of the "norm", from 1, of Schroedinger's equation.
  *
  *  @param      options  with a method
  *  @param[out] law      [DVI_LAWS_MAX]

@@ -318,6 +318,35 @@ dvi_status dvi__integrator_smooth_step(dvi_integrator *I, double h)
   return DVI_OK;
 }
 
+/* Nothing but the method may have a part in these steps. */
+static int can_step_together(const dvi_integrator *I, double h)
+{
+  return I->stepper.method->pass != NULL && I->monitored == NULL && I->balances == 0 &&
+         I->system->dynamics->constraint == NULL && !dvi__hits_divide(I) &&
+         !dvi_integrator_chooses_steps(I) && dvi__check_step(I->now.t, h) == DVI_OK &&
+         dvi__stepper_check_step(&I->stepper, h) == DVI_OK;
+}
+
+long dvi__integrator_steps(dvi_integrator *I, double h, long count)
+{
+  enum { MOST = 32 }; /* more would hardly save time */
+  double length[MOST];
+  const int steps = count < MOST ? (int)count : MOST;
+  if (!can_step_together(I, h)) return 0;
+  for (int i = 0; i < steps; i++) length[i] = h;
+  exchange_memory(I);
+  I->next.density = I->now.density;
+  I->next.side = I->now.side;
+  if (!I->stepper.method->pass(&I->stepper, &I->now, I->memory_before, &I->next, length, steps) ||
+      !isfinite(I->next.t) || I->next.t + h == I->next.t) {
+    exchange_memory(I);
+    return 0;
+  }
+  accept_step(I, h * steps);
+  I->counters.steps += steps - 1;
+  return steps;
+}
+
 dvi_status dvi__integrator_step_exactly(dvi_integrator *I, double h)
 {
   I->stepper.exact = 1;

@@ -64,6 +64,11 @@ dvi_status dvi__check_step(double t, double h);
 
 /* Take one step of the method, without a look at contacts, and take it back. */
 dvi_status dvi__integrator_smooth_step(dvi_integrator *integrator, double h);
+
+/* Take up to `count` steps in one pass of the method, with the bits of as many single steps. Returns
+ * their number, or 0 if nothing changed, because the method has no such pass or a step fails. They
+ * count as one last step, which is not to be taken back. */
+long dvi__integrator_steps(dvi_integrator *integrator, double h, long count);
 void dvi__integrator_smooth_back(dvi_integrator *integrator);
 
 /* Evaluate q [nq] and v [nv] at tau in [0,1] of the last smooth step. Either may be NULL. */

@@ -276,13 +276,14 @@ bool dvi__read_density(dvi_scene *scene, const dvi__tree *section)
 bool dvi__read_schroedinger(dvi_scene *scene, const dvi__tree *section)
 {
   scene->density->section = section;
-  return read_parts(scene, section, dvi__schroedinger_node) && make(scene);
+  return read_parts(scene, section, dvi__schroedinger_node) && make(scene) &&
+         dvi__equation_check_ground(scene);
 }
 
 void dvi__scene_density_clear(dvi_scene *scene)
 {
   if (scene->density == NULL) return;
-  dvi_schroedinger_destroy(&scene->density->equation);
+  if (scene->density->equation != NULL) dvi_schroedinger_destroy(&scene->density->equation->made);
   dvi_density_destroy(&scene->density->density);
   dvi_space_destroy(&scene->density->space);
   dvi_mesh_destroy(&scene->density->mesh);

@@ -7,6 +7,7 @@
 #define DVI_SCENE_DENSITY_SCENE_DENSITY_H
 #include <dvi/density.h>
 #include <dvi/multisymplectic.h>
+#include <dvi/schroedinger.h>
 
 #include "scene/elaborate/kernels.h"
 
@@ -57,6 +58,14 @@ typedef struct dvi__declared_field {
   int first, components;
 } dvi__declared_field;
 
+/* Schroedinger's equation of a scene, made when it is first asked for. */
+struct dvi__equation {
+  double hbar, mass;
+  int radial; /* 0, or the dimension */
+  dvi__local *potential, *interaction;
+  dvi_schroedinger *made; /* or NULL */
+};
+
 /* The classes into which the summands of a density are sorted, which are those of its parts. */
 enum { DVI__DENSITY_CLASSES = DVI_DENSITY_GENERAL + 1 };
 
@@ -84,14 +93,13 @@ struct dvi__scene_density {
   bool is_uniform;                     /* the density does not depend on position */
   bool is_static;                      /* it has no rates */
   char chosen[DVI_AXES_MAX][96];       /* kinds of the axes, with the points chosen here */
-  double hbar, mass;                   /* of the section schroedinger */
-  dvi__local *potential, *interaction; /* likewise, NULL without it */
-  struct dvi_schroedinger *equation;   /* NULL until it is asked for */
   dvi_space *space;
   dvi_density *density;
   int64_t functions;
   dvi_multisymplectic_symmetry *symmetry; /* [symmetries] of a march on a lattice */
   int symmetries;
+  struct dvi__equation *equation; /* NULL without the section schroedinger */
+  double ground;                  /* norm of the ground state that is asked for, or 0 */
 };
 
 /* Return the number of components of all fields. */
@@ -153,5 +161,16 @@ dvi_status dvi__lattice_march(const dvi_scene *scene, const dvi_march_options *o
                               dvi_march **march);
 dvi_status dvi__lattice_laws(const dvi_scene *scene, const dvi_march_options *options, int steps,
                              dvi_law *law, int *count);
+
+/* Do the same for Schroedinger's equation. dvi__equation_order gives the order of a method. */
+bool dvi__equation_marches(const dvi_scene *scene, const char *method);
+int dvi__equation_order(const char *method);
+const char *dvi__equation_refused(const dvi_scene *scene, const char **section);
+/* Refuse a ground state of which there is none. */
+bool dvi__equation_check_ground(dvi_scene *scene);
+dvi_status dvi__equation_march(const dvi_scene *scene, const dvi_march_options *options,
+                               dvi_march **march);
+dvi_status dvi__equation_laws(const dvi_scene *scene, const dvi_march_options *options, int steps,
+                              dvi_law *law, int *count);
 
 #endif

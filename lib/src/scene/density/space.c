@@ -19,18 +19,30 @@ static int good_points(int least)
   }
 }
 
-/* Give a Fourier axis more points than the degree of a polynomial density times its modes, so that
- * its integrals are exact. Its own choice does so up to the degree 4. */
-static void choose_points(struct dvi__scene_density *s, int d)
+/* Tell if the scene's own method turns phases at points, of which there are as many as
+ * functions. */
+static bool is_split(const dvi_scene *scene)
 {
+  const char *method = scene->plan.method;
+  const size_t length = method != NULL ? strcspn(method, ":") : 0;
+  return scene->density->equation != NULL && length == strlen("split") &&
+         strncmp(method, "split", length) == 0;
+}
+
+/* Give a Fourier axis more points than the degree of a polynomial density times its modes, so that
+ * its integrals are exact. Its own choice does so up to the degree 4. For split steps there are as
+ * many as functions. */
+static void choose_points(const dvi_scene *scene, int d)
+{
+  struct dvi__scene_density *s = scene->density;
   static const char start[] = "fourier:modes=";
   const char *kind = s->axis[d].kind;
   char *rest;
-  if (strncmp(kind, start, sizeof start - 1) != 0 || s->degree <= 4) return;
+  if (strncmp(kind, start, sizeof start - 1) != 0 || (s->degree <= 4 && !is_split(scene))) return;
   const long modes = strtol(kind + sizeof start - 1, &rest, 10);
-  if (*rest != '\0' || modes < 1 || modes > 1000000 / s->degree) return;
-  (void)dvi__print(s->chosen[d], sizeof s->chosen[d], "%s%ld,points=%d", start, modes,
-                   good_points(s->degree * (int)modes + 1));
+  if (*rest != '\0' || modes < 1 || modes > 1000000 / (s->degree > 2 ? s->degree : 2)) return;
+  const int points = is_split(scene) ? 2 * (int)modes + 1 : good_points(s->degree * (int)modes + 1);
+  (void)dvi__print(s->chosen[d], sizeof s->chosen[d], "%s%ld,points=%d", start, modes, points);
   s->axis[d].kind = s->chosen[d];
 }
 
@@ -111,7 +123,7 @@ bool dvi__density_make_space(dvi_scene *scene)
                              "beside 'domain' the section 'space' is missing, as in "
                              "'space: fem:degree=2,cells=100'");
   if (s->mesh == NULL && !check_periods(scene)) return false;
-  for (int d = 0; d < s->jets.dimension && s->mesh == NULL; d++) choose_points(s, d);
+  for (int d = 0; d < s->jets.dimension && s->mesh == NULL; d++) choose_points(scene, d);
   if (!choose_coefficient(scene, &part)) return false;
   const dvi_space_options options = {.size = sizeof options,
                                      .kind = s->mesh == NULL   ? NULL
