@@ -120,7 +120,7 @@ int density_views_make(const problem *scene, int fields, density_views *views)
   choose_quantities(v);
   views->count = fields * v->shown;
   if (!place_points(v)) return out_of_memory();
-  const size_t count = (size_t)views->count;
+  const size_t count = (size_t)views->count + 1;
   views->view = calloc(count, sizeof *views->view);
   v->value = calloc(count * (size_t)v->points, sizeof *v->value);
   v->name = calloc(count, sizeof *v->name);

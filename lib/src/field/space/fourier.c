@@ -8,6 +8,7 @@
  * pairs (c, s) and multiply them by powers of the wave number. Boxes are transformed axis by axis.
  * Source: Leok 2004, sec. 5.8. */
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 #include "core/memory.h"
@@ -329,6 +330,56 @@ static dvi_status torus_row(const dvi_space *space, const int *order, const doub
   return DVI_OK;
 }
 
+/* Sum over the functions of axis d at x: from [own][after] to [after]. */
+static void sum_over_axis(const dvi__line *line, int order, double x, int64_t after,
+                          const double *from, double *to)
+{
+  memset(to, 0, (size_t)after * sizeof *to);
+  for (int64_t j = 0; j < line->functions; j++) {
+    const double factor = value_at(line, order, j, x);
+    for (int64_t i = 0; i < after; i++) to[i] += factor * from[j * after + i];
+  }
+}
+
+/* Points of a grid have the first coordinates of those before, and share the sums over these axes.
+ * sum[d] has those over the axes 0 to d. */
+static dvi_status sum_at_points(const dvi_space *space, const int *order, const double *U,
+                                int64_t count, const double *x, double *const *sum, double *values)
+{
+  const int axes = space->dimension;
+  double place[DVI_AXES_MAX] = {0};
+  for (int64_t i = 0; i < count; i++) {
+    bool is_known = i > 0;
+    int64_t after = space->functions;
+    for (int d = 0; d < axes; d++) {
+      const double at = x[d * count + i];
+      is_known = is_known && place[d] == at;
+      place[d] = at;
+      after /= space->line[d].functions;
+      if (!isfinite(at)) return dvi__space_outside(space, place);
+      if (!is_known)
+        sum_over_axis(&space->line[d], order[d], at, after, d > 0 ? sum[d - 1] : U, sum[d]);
+    }
+    values[i] = sum[axes - 1][0];
+  }
+  return DVI_OK;
+}
+
+static dvi_status torus_evaluate(const dvi_space *space, const int *order, const double *U,
+                                 int64_t count, const double *x, double *values)
+{
+  double *room = DVI_NEW(double, 2 * space->functions), *sum[DVI_AXES_MAX] = {room};
+  if (room == NULL) return dvi__fail(DVI_NO_MEMORY, "space: no memory");
+  int64_t after = space->functions;
+  for (int d = 0; d + 1 < space->dimension; d++) {
+    after /= space->line[d].functions;
+    sum[d + 1] = sum[d] + after;
+  }
+  const dvi_status status = sum_at_points(space, order, U, count, x, sum, values);
+  dvi__release(room);
+  return status;
+}
+
 /* The mass is the identity. */
 static dvi_status torus_interpolate(const dvi_space *space, const dvi__sampled *f, double *U)
 {
@@ -364,7 +415,7 @@ const dvi__domain dvi__torus = {
     .apply = torus_apply,
     .add_transposed = torus_add_transposed,
     .row = torus_row,
-    .evaluate = dvi__evaluate_by_rows,
+    .evaluate = torus_evaluate,
     .interpolate = torus_interpolate,
     .explain = torus_explain,
 };
