@@ -159,6 +159,15 @@ says err 'all steps of the density of .breather.yaml. are equal' 'the reason'
 expect 2 'a gradient' gradient breather.yaml
 says err 'has no Lagrangian of R^n' 'the reason'
 
+expect 2 'a march at once' path lattice.yaml --ends initial --steps 3
+says err 'multisymplectic is a march of a field' 'the reason'
+expect 2 'a march at several points' sweep lattice.yaml --set w=0.5,0.6 --out x.csv
+says err 'multisymplectic is a march of a field' 'the reason'
+expect 2 'digits of a march' run lattice.yaml --verify
+says err '--verify is for mechanical methods' 'the reason'
+expect 2 'a path of first order' path trap.yaml --ends initial --steps 3
+says err 'its equations are of first order' 'the reason'
+
 # All of a path at once. On the circle all frequencies are whole numbers, so that values at t = 0
 # and t = pi say nothing of the motion between.
 cat >circle.yaml <<END
@@ -175,6 +184,19 @@ path="path circle.yaml --method galerkin:degree=8 --ends fixed --steps 2 --to 0,
 # u = cos(x) sin(1 - t)/sin(1), and the coefficient of cos(x) is sqrt(pi)
 expect 0 'values at two times' $path --t-end 1 --out path.csv
 line path.csv 3 3 1.00985019978 1e-9
+{ cat circle.yaml; echo 'final: {u: sin(x)/2}'; } >ends.yaml
+expect 0 'the end of the scene' path ends.yaml --method galerkin:degree=8 --ends fixed --steps 2 \
+  --out path.csv
+line path.csv 3 3 1.00985019978 1e-9
+line path.csv 3 4 0.50492509989 1e-9
+expect 2 'no end' path circle.yaml --method galerkin:degree=8 --ends fixed --steps 2
+says err 'or the section final of the scene' 'what is missing'
+sed "s/^final.*/final: {u': 1}/" ends.yaml >wrong.yaml
+expect 2 'an end of rates' path wrong.yaml --ends fixed --steps 2
+says err "the end has the fields, without rates, and no .u'" 'the reason'
+sed 's/^final.*/final: {u: 1\/(x - x)}/' ends.yaml >wrong.yaml
+expect 2 'an end that is not finite' path wrong.yaml --ends fixed --steps 2
+says err 'wrong.yaml:9:12: at the end: 1/(x - x)' 'the reason'
 expect 1 'conjugate times' $path --t-end 3.141592653589793
 says err 'its ends are conjugate, so that there are many such paths or none' 'the reason'
 

@@ -82,7 +82,7 @@ expect 0 'a ground state' solve trap.yaml --csv state.csv
 says out '^mu  *3.1072430894' 'the chemical potential'
 says out '^energy  *1.9471272150' 'the energy'
 says out '^width ' 'the probes'
-says state.csv '^x,psi_re,psi_im$' 'its values'
+says state.csv '^x,psi_re,psi_im,.psi.^2$' 'its values'
 expect 0 'more of it' solve trap.yaml --set beta=100
 says out '^mu  *14.13428708' 'the chemical potential'
 sed 's/beta: 10/beta: 5/;s/ground/{ground: 2}/' trap.yaml >two.yaml

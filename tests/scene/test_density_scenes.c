@@ -375,6 +375,24 @@ START_TEST(fields_are_known_as_they_are_declared)
 }
 END_TEST
 
+START_TEST(the_end_of_a_path_is_the_field_there)
+{
+  dvi_scene_end end;
+  (void)open_scene("domain: {x: [0, 1]}\nspace: fem:degree=1,cells=4\nfields: {u: scalar}\n"
+                   "boundary: fixed\ndensity: u'^2/2 - d(u,x)^2/2\nfinal: {u: x*(1 - x)}\n");
+  ck_assert(dvi_scene_end_of(scene, &end));
+  for (int i = 0; i < 3; i++) {
+    const double x = 0.25 * (i + 1);
+    ck_assert_double_eq_tol(end.q[i], x * (1 - x), 1e-16);
+    ck_assert(!end.free_q[i]);
+    ck_assert(end.free_p[i]);
+  }
+  (void)open_scene("domain: {x: [0, 1]}\nspace: fem:degree=1,cells=4\nfields: {u: scalar}\n"
+                   "boundary: fixed\ndensity: u'^2/2 - d(u,x)^2/2\n");
+  ck_assert(!dvi_scene_end_of(scene, &end));
+}
+END_TEST
+
 START_TEST(a_domain_has_a_mesh_for_what_is_shown)
 {
   (void)open_scene("domain: {x: [0, 1], y: [0, 1]}\nspace: fem:degree=2,cells=4\n"
@@ -507,6 +525,7 @@ SUITE(density_scenes)
   tcase_add_test(tests, probes_are_values_derivatives_and_integrals);
   tcase_add_test(tests, unknowns_have_the_names_of_their_fields);
   tcase_add_test(tests, fields_are_known_as_they_are_declared);
+  tcase_add_test(tests, the_end_of_a_path_is_the_field_there);
   tcase_add_test(tests, a_domain_has_a_mesh_for_what_is_shown);
   tcase_add_test(tests, a_step_is_a_fraction_of_the_largest_stable_one);
   tcase_add_test(tests, conditions_hold_linear_fields);

@@ -8,6 +8,7 @@
 #include <dvi/density.h>
 #include <dvi/field.h>
 #include <dvi/march.h>
+#include <dvi/moving.h>
 #include <dvi/schroedinger.h>
 #include <dvi/sensitivity.h>
 #include <dvi/system.h>
@@ -56,8 +57,8 @@ typedef struct dvi_scene_range {
   const double *value; /**< [count] */
 } dvi_scene_range;
 
-/** The end of a scene's control problem. free_q and free_p are not 0 for the numbers that are free,
- *  as in dvi_control_options. */
+/** The end of a scene's control problem, or of a path of fields with a density. free_q and free_p
+ *  are not 0 for the numbers that are free, as in dvi_control_options. */
 typedef struct dvi_scene_end {
   const double *q, *p;
   const char *free_q, *free_p;
@@ -145,8 +146,13 @@ const dvi_system_terms *dvi_scene_terms(const dvi_scene *scene);
 const dvi_field *dvi_scene_field(const dvi_scene *scene);
 
 /** Return the field of a scene with a density, owned by the scene. Its coordinates are named u_1,
- *  u_2 and so on by its fields. NULL if the scene has no density. */
+ *  u_2 and so on by its fields. NULL if the scene has no density, or one on a mesh that moves. */
 const dvi_density *dvi_scene_density(const dvi_scene *scene);
+
+/** Return the field of a scene with a density on a mesh that moves (section moving), owned by the
+ *  scene. Its coordinates are named by the axis, x_1 and so on, and by its fields. NULL for other
+ *  scenes. */
+const dvi_moving *dvi_scene_moving(const dvi_scene *scene);
 
 /** Return the name of component i of the fields with a density ("u", "psi_re", "w_1"), owned by the
  *  scene. NULL if there is none. */
@@ -288,7 +294,7 @@ const dvi_controls *dvi_scene_controls(const dvi_scene *scene);
 /** Return the name of control i. NULL if i is out of range. Owned by the scene. */
 const char *dvi_scene_control(const dvi_scene *scene, int i);
 
-/** Give the end of the scene's control problem, owned by the scene. Returns 0 if there is none. */
+/** Give the end that the scene has, owned by the scene. Returns 0 if there is none. */
 int dvi_scene_end_of(const dvi_scene *scene, dvi_scene_end *end);
 
 /** Derive the scene by its parameters, for dvi_sensitivity_create. Parameter k is that of

@@ -78,7 +78,9 @@ static void make(dvi_scene *scene)
 const dvi_schroedinger *dvi_scene_schroedinger(const dvi_scene *scene)
 {
   const char *unread;
-  if (scene == NULL || scene->density == NULL || scene->density->equation == NULL) return NULL;
+  if (scene == NULL || scene->density == NULL || scene->density->equation == NULL ||
+      scene->density->moving != NULL)
+    return NULL;
   dvi_scene *own = (dvi_scene *)scene;
   struct dvi__equation *e = own->density->equation;
   if (dvi__equation_refused(scene, &unread) != NULL) return NULL;
