@@ -161,8 +161,9 @@ dvi_status dvi_density_solve(const dvi_density *density, double *U, dvi_field_so
  *  the space keeps translations (fourier).
  *
  *  Values that move, G(t), stay in L, with a vector potential A(t) = M_ID G' of the masses M_ID
- *  between coordinates and them. Where a one-form does not change with constants added to a
- *  component of which no part takes values, the first coefficient of the component stays 0.
+ *  between coordinates and them, unless these are 0, as lumped ones are. Where a one-form does not
+ *  change with constants added to a component of which no part takes values, the first coefficient
+ *  of the component stays 0.
  *
  *  A part with a potential has a full Hessian on fourier, which is declared for up to 300
  *  coordinates. Above it is without_hessian. Coefficients of quadratic parts on fourier that vary

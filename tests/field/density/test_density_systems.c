@@ -296,6 +296,34 @@ START_TEST(values_that_move_stay_in_the_lagrangian)
 }
 END_TEST
 
+/* Lumped masses have no part M_ID, so that explicit steps serve, with their order 2. */
+START_TEST(values_that_move_beside_lumped_masses_take_explicit_steps)
+{
+  const dvi_density_part parts[] = {kinetic_part, elastic_part};
+  double error[2];
+  for (int i = 0; i < 2; i++) {
+    char kind[64];
+    const int cells = 20 << i;
+    (void)snprintf(kind, sizeof kind, "fem:degree=2,cells=%d,lumped=yes", cells);
+    density_field field = make_density(make_density_space(kind, 1, 0, 1, 0), parts, 2, &moving_ends,
+                                       1);
+    dvi_system_terms terms;
+    ck_assert_int_eq(dvi_density_system_terms(field.density, &terms), DVI_OK);
+    ck_assert_ptr_null(terms.vector_potential);
+    set_density(&field, wave, wave_rate, NULL);
+    run_density(&field, "verlet", 0, 0.25 / cells, 8 * cells);
+    error[i] = 0;
+    for (int k = 0; k <= cells; k++) {
+      const double x = (double)k / cells;
+      error[i] = fmax(error[i], fabs(density_at(&field, 2, &x) - sin(2 - x)));
+    }
+    end_density(&field);
+  }
+  ck_assert_double_lt(error[0], 1e-4);
+  ck_assert_double_eq_tol(log2(error[0] / error[1]), 2, 0.1);
+}
+END_TEST
+
 START_TEST(callbacks_agree_with_differences_for_values_that_move)
 {
   const dvi_density_part parts[] = {kinetic_part, elastic_part, sine_gordon_part};
@@ -377,6 +405,7 @@ SUITE(density_systems)
   tcase_add_test(tests, fluxes_and_robin_terms_pull_at_ends);
   tcase_add_test(tests, fluxes_and_robin_terms_pull_at_sides);
   tcase_add_test(tests, values_that_move_stay_in_the_lagrangian);
+  tcase_add_test(tests, values_that_move_beside_lumped_masses_take_explicit_steps);
   tcase_add_test(tests, callbacks_agree_with_differences_for_values_that_move);
   tcase_add_test(tests, fields_explain_themselves);
   tcase_add_test(tests, rates_are_lifted_with_those_that_move);

@@ -143,7 +143,7 @@ static dvi_status shift_matrix(const dvi__pencil *pencil, double shift, dvi__csr
   return status;
 }
 
-/* Where there are eigenvalues below the shift, as of unstable states, the matrix is not definite. */
+/* With eigenvalues below the shift, as of unstable states, the matrix is not definite. */
 static dvi_status create_inverse(const dvi__pencil *pencil, double shift, dvi__definite *inverse)
 {
   dvi__csr shifted;

@@ -28,7 +28,8 @@ static void write_mass(dvi__note *p, const dvi_density *d)
   else
     dvi__note_add(p, "mass: %s, %lld entries\n", d->mass_is_diagonal ? "diagonal" : "sparse",
                   (long long)d->mass.start[d->mass.rows]);
-  if (d->moving > 0) dvi__note_add(p, "vector potential: of the values that move\n");
+  if (d->terms.vector_potential != NULL)
+    dvi__note_add(p, "vector potential: of the values that move\n");
 }
 
 static void write_hessian(dvi__note *p, const dvi__integral *integral, const dvi__pattern *pattern)

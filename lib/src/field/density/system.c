@@ -340,10 +340,29 @@ static dvi_lagrangian general_term(dvi_density *d)
                           .user = &d->lagrangian};
 }
 
+/* Tell if the rate at a point is one of a coordinate and of a value that moves. With masses at the
+ * nodes there is no such point, A is 0, and explicit methods apply. */
+static int has_vector_potential(const dvi_density *d)
+{
+  for (int p = 0; p < d->kinetic.parts && d->moving > 0; p++) {
+    const dvi__density_part *part = d->kinetic.part[p];
+    for (int64_t k = 0; k < part->points; k++) {
+      int free = 0, moves = 0;
+      for (int a = 0; a < part->given.variables; a++) {
+        const dvi__jet_rows *rows = part->rows + a;
+        free |= rows->start[k + 1] > rows->start[k];
+        moves |= rows->moving.rows > 0 && rows->moving.start[k + 1] > rows->moving.start[k];
+      }
+      if (free && moves) return 1;
+    }
+  }
+  return 0;
+}
+
 static void declare_dynamics(dvi_density *d)
 {
   if (d->mass.rows > 0) d->terms.mass = mass_term(d);
-  if (d->mass.rows > 0 && d->moving > 0) {
+  if (has_vector_potential(d)) {
     d->vector_potential_term = vector_term(d);
     d->terms.vector_potential = &d->vector_potential_term;
   }
