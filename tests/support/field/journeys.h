@@ -4,15 +4,14 @@
 #include <dvi/integrator.h>
 #include <dvi/moving.h>
 
-enum { JOURNEY_MOST = 512 /* nodes */ };
+enum { JOURNEY_MOST = 8192 /* coordinates */ };
 
 /* A field under way. */
 typedef struct journey {
   dvi_moving *moving;
   dvi_system *system;
   dvi_integrator *integrator;
-  double q[2 * JOURNEY_MOST], v[2 * JOURNEY_MOST], p[2 * JOURNEY_MOST], x[JOURNEY_MOST + 1],
-      u[JOURNEY_MOST + 1];
+  double q[JOURNEY_MOST], v[JOURNEY_MOST], p[JOURNEY_MOST], x[JOURNEY_MOST], u[JOURNEY_MOST];
   double first[4], drift[4]; /* of the invariants */
   double error;              /* for the caller */
 } journey;

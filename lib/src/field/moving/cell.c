@@ -19,18 +19,19 @@ enum {
   POSITION_PAIRS = AXES * (AXES + 1) / 2
 };
 
-/* A variable of the density, with its derivatives by some numbers of the cell. */
+/* The derivatives of a variable of the density by some numbers of the cell. */
 typedef struct slope {
-  double value, by[ENTRIES];
+  double by[ENTRIES];
   int count, at[ENTRIES];
 } slope;
 
-/* A cell, its numbers and rates. */
+/* A cell, its numbers and rates, and the gradients of its components. */
 typedef struct element {
   const dvi_moving *m;
   int nodes, rates; /* place of the rates */
   double y[CELL_NUMBERS];
   dvi__simplex simplex;
+  double gradient[DVI_MOVING_COMPONENTS_MAX][AXES];
 } element;
 
 /* The density at the points of some cells, each array variable by variable. */
@@ -60,14 +61,13 @@ static int value_at(const element *e, int a, int component)
   return a * e->m->numbers + e->m->dimension + component;
 }
 
-/* Give the gradient of a component. */
-static void find_gradient(const element *e, int component, double *s)
+static void find_gradients(element *e)
 {
-  const double *u = e->y + value_at(e, 0, component);
-  for (int i = 0; i < e->m->dimension; i++) {
-    s[i] = 0;
-    for (int a = 1; a < e->nodes; a++)
-      s[i] += e->simplex.gradient[a][i] * (u[a * e->m->numbers] - u[0]);
+  for (int c = 0; c < e->m->components; c++) {
+    const double *u = e->y + value_at(e, 0, c);
+    for (int i = 0; i < e->m->dimension; i++)
+      for (int a = 1; a < e->nodes; a++)
+        e->gradient[c][i] += e->simplex.gradient[a][i] * (u[a * e->m->numbers] - u[0]);
   }
 }
 
@@ -80,19 +80,6 @@ static double dot(const element *e, const double *a, const double *b)
 
 /* ---- variables ---- */
 
-/* Add the derivative of a component along a vector. */
-static void add_slope(const element *e, int component, const double *along, slope *z)
-{
-  double s[AXES];
-  find_gradient(e, component, s);
-  z->value += dot(e, along, s);
-  for (int a = 0; a < e->nodes; a++) {
-    const double by = dot(e, along, e->simplex.gradient[a]);
-    for (int i = 0; i < e->m->dimension; i++) depend(z, position_at(e, a, i), -by * s[i]);
-    depend(z, value_at(e, a, component), by);
-  }
-}
-
 /* Give a number of node 0, or its rate, at a point of the cell. */
 static double between(const element *e, const double *place, int number)
 {
@@ -101,32 +88,10 @@ static double between(const element *e, const double *place, int number)
   return sum;
 }
 
-static slope find_number(const element *e, const double *place, int number)
-{
-  slope z = {.value = between(e, place, number)};
-  for (int a = 0; a < e->nodes; a++) depend(&z, a * e->m->numbers + number, place[a]);
-  return z;
-}
-
 /* Give the negative velocity of the mesh at a point. */
 static void find_wind(const element *e, const double *place, double *wind)
 {
   for (int i = 0; i < e->m->dimension; i++) wind[i] = -between(e, place, e->rates + i);
-}
-
-static slope find_rate(const element *e, const double *place, int component)
-{
-  double wind[AXES], s[AXES];
-  slope z = {.value = between(e, place, e->rates + value_at(e, 0, component))};
-  find_wind(e, place, wind);
-  find_gradient(e, component, s);
-  add_slope(e, component, wind, &z);
-  for (int a = 0; a < e->nodes; a++) {
-    for (int i = 0; i < e->m->dimension; i++)
-      depend(&z, e->rates + position_at(e, a, i), -place[a] * s[i]);
-    depend(&z, e->rates + value_at(e, a, component), place[a]);
-  }
-  return z;
 }
 
 /* Tell along which axis a variable is a derivative, or -1. */
@@ -135,15 +100,57 @@ static int axis_of(const dvi_jet *jet)
   return jet->order[0] > 0 ? 0 : jet->order[1] > 0 ? 1 : -1;
 }
 
+static double value_of(const element *e, const double *place, const dvi_jet *jet)
+{
+  const int number = value_at(e, 0, jet->component);
+  double wind[AXES];
+  if (!jet->rate && axis_of(jet) >= 0) return e->gradient[jet->component][axis_of(jet)];
+  if (!jet->rate) return between(e, place, number);
+  find_wind(e, place, wind);
+  return between(e, place, e->rates + number) + dot(e, wind, e->gradient[jet->component]);
+}
+
+/* ---- first derivatives of variables ---- */
+
+/* Add those of the derivative of a component along a vector. */
+static void add_slope(const element *e, int component, const double *along, slope *z)
+{
+  for (int a = 0; a < e->nodes; a++) {
+    const double by = dot(e, along, e->simplex.gradient[a]);
+    for (int i = 0; i < e->m->dimension; i++)
+      depend(z, position_at(e, a, i), -by * e->gradient[component][i]);
+    depend(z, value_at(e, a, component), by);
+  }
+}
+
+static void add_number(const element *e, const double *place, int number, slope *z)
+{
+  for (int a = 0; a < e->nodes; a++) depend(z, a * e->m->numbers + number, place[a]);
+}
+
+static void add_rate(const element *e, const double *place, int component, slope *z)
+{
+  double wind[AXES];
+  find_wind(e, place, wind);
+  add_slope(e, component, wind, z);
+  for (int a = 0; a < e->nodes; a++) {
+    for (int i = 0; i < e->m->dimension; i++)
+      depend(z, e->rates + position_at(e, a, i), -place[a] * e->gradient[component][i]);
+    depend(z, e->rates + value_at(e, a, component), place[a]);
+  }
+}
+
 static const double unit[AXES][AXES] = {{1, 0}, {0, 1}};
 
-static slope find_variable(const element *e, const double *place, const dvi_jet *jet)
+static void find_variable(const element *e, const double *place, const dvi_jet *jet, slope *z)
 {
-  slope z = {0};
-  if (jet->rate) return find_rate(e, place, jet->component);
-  if (axis_of(jet) < 0) return find_number(e, place, value_at(e, 0, jet->component));
-  add_slope(e, jet->component, unit[axis_of(jet)], &z);
-  return z;
+  z->count = 0;
+  if (jet->rate)
+    add_rate(e, place, jet->component, z);
+  else if (axis_of(jet) < 0)
+    add_number(e, place, value_at(e, 0, jet->component), z);
+  else
+    add_slope(e, jet->component, unit[axis_of(jet)], z);
 }
 
 /* ---- second derivatives of variables ---- */
@@ -161,8 +168,7 @@ static void add_pair(dvi__stencil *s, int i, int j, double value)
  * where s is the gradient of the component. */
 static void bend_slope(const element *e, int component, const double *along, dvi__stencil *s)
 {
-  double slope_by[AXES];
-  find_gradient(e, component, slope_by);
+  const double *of_u = e->gradient[component];
   for (int a = 0; a < e->nodes; a++)
     for (int c = 0; c < e->nodes; c++) {
       const double *of_a = e->simplex.gradient[a], *of_c = e->simplex.gradient[c];
@@ -171,7 +177,7 @@ static void bend_slope(const element *e, int component, const double *along, dvi
         add_pair(s, position_at(e, a, i), value_at(e, c, component), -by_a * of_c[i]);
         for (int j = 0; j < e->m->dimension; j++)
           s->second[position_at(e, a, i) * s->size + position_at(e, c, j)] +=
-              by_c * of_a[j] * slope_by[i] + by_a * of_c[i] * slope_by[j];
+              by_c * of_a[j] * of_u[i] + by_a * of_c[i] * of_u[j];
       }
     }
 }
@@ -188,7 +194,7 @@ static void bend_variable(const element *e, const double *place, const dvi_jet *
   for (int i = 0; i < e->m->dimension; i++) along[i] *= factor;
   bend_slope(e, jet->component, along, s);
   for (int i = 0; i < e->m->dimension && jet->rate; i++) {
-    slope by_axis = {0};
+    slope by_axis = {.count = 0};
     add_slope(e, jet->component, unit[i], &by_axis);
     for (int k = 0; k < by_axis.count; k++)
       for (int a = 0; a < e->nodes; a++)
@@ -209,11 +215,12 @@ static int gather(const dvi_moving *m, const dvi__moving_state *state, int cell,
     const int returned = dvi__moving_gather(m, state, corner, e->nodes, e->y);
     if (returned != 0) return returned;
     e->simplex = dvi__moving_simplex(m, e->y);
+    find_gradients(e);
     for (int k = 0; k < m->points; k++) {
       const int lane = c * m->points + k;
       for (int i = 0; i < m->dimension; i++) w->x[i * w->count + lane] = between(e, m->place[k], i);
       for (int j = 0; j < m->part.variables; j++)
-        w->z[j * w->count + lane] = find_variable(e, m->place[k], &m->part.variable[j]).value;
+        w->z[j * w->count + lane] = value_of(e, m->place[k], &m->part.variable[j]);
     }
   }
   return 0;
@@ -276,11 +283,15 @@ static void add_point(const element *e, int order, const lanes *w, int lane, dvi
   slope z[DVI__MOVING_VARIABLES + AXES];
   s->value += factor * w->l[lane];
   if (order == 0) return;
-  for (int j = 0; j < n; j++) z[j] = find_variable(e, place, &m->part.variable[j]);
-  for (int i = 0; i < m->dimension; i++) z[n + i] = find_number(e, place, i);
-  for (int j = 0; j < n; j++) add_first(z + j, factor * w->l_z[j * w->count + lane], s);
-  for (int i = 0; i < m->dimension && m->space_derivative != NULL; i++)
+  for (int j = 0; j < n; j++) {
+    find_variable(e, place, &m->part.variable[j], z + j);
+    add_first(z + j, factor * w->l_z[j * w->count + lane], s);
+  }
+  for (int i = 0; i < m->dimension && m->space_derivative != NULL; i++) {
+    z[n + i].count = 0;
+    add_number(e, place, i, z + n + i);
     add_first(z + n + i, factor * w->l_x[i * w->count + lane], s);
+  }
   if (order > 1) add_second_of_point(e, w, lane, z, s);
 }
 
@@ -339,7 +350,7 @@ static int add_cell(const dvi_moving *m, int order, const lanes *w, int lane, in
   const int returned = m->mean.mean != NULL ? add_mean(e, order, &s) : 0;
   if (returned != 0) return returned;
   release_volume(e, order, &s);
-  if (m->kappa > 0) dvi__moving_add_barrier(m, cell, &e->simplex, &s);
+  if (m->kappa > 0) dvi__moving_add_barrier(m, cell, order, &e->simplex, &s);
   dvi__stencil_scatter(m, &m->cell, cell, &s, sums);
   return 0;
 }

@@ -126,8 +126,8 @@ void dvi__stencil_clear(const dvi_moving *m, int nodes, dvi__stencil *s);
 void dvi__stencil_scatter(const dvi_moving *m, const dvi__stencils *of, int k,
                           const dvi__stencil *s, const dvi__moving_sums *sums);
 
-/* Add the stiffness of a cell to its stencil. */
-void dvi__moving_add_barrier(const dvi_moving *m, int cell, const dvi__simplex *now,
+/* Add the stiffness of a cell, with derivatives up to an order, to its stencil. */
+void dvi__moving_add_barrier(const dvi_moving *m, int cell, int order, const dvi__simplex *now,
                              dvi__stencil *s);
 
 /* Add the integrals over cells and the stiffness of the mesh. Returns as callbacks do. */

@@ -86,7 +86,7 @@ static void add_second(const dvi_moving *m, const dvi__simplex *now, const barri
   }
 }
 
-void dvi__moving_add_barrier(const dvi_moving *m, int cell, const dvi__simplex *now,
+void dvi__moving_add_barrier(const dvi_moving *m, int cell, int order, const dvi__simplex *now,
                              dvi__stencil *s)
 {
   const dvi__simplex was = reference(m, cell);
@@ -101,5 +101,5 @@ void dvi__moving_add_barrier(const dvi_moving *m, int cell, const dvi__simplex *
       s->first[a * m->numbers + i] += factor *
                                       ((1 - (1 + D) / (J * J)) * b.by_J[a][i] + b.by_D[a][i] / J);
     }
-  add_second(m, now, &b, factor, s);
+  if (order > 1) add_second(m, now, &b, factor, s);
 }

@@ -1,0 +1,662 @@
+/* labels: slow */
+/* Fields on meshes of triangles that move. */
+#include <math.h>
+#include <string.h>
+
+#include "support/field/journeys.h"
+#include "support/field/planes.h"
+#include "support/suite.h"
+
+static const double pi = 3.14159265358979323846;
+
+/* ---- derivatives ---- */
+
+/* l = a_0(x) |z|^2/2 + sum_k a_k(x) sin(b_k.z) of eight variables. */
+enum { VARIABLES = 8, WAVES = 2 };
+
+static double factor(int k, const double *x)
+{
+  return 1 + 0.3 * sin(k + x[0] + 0.5 * x[1]);
+}
+
+static double slope(int k, const double *x, int axis)
+{
+  return 0.3 * cos(k + x[0] + 0.5 * x[1]) * (axis ? 0.5 : 1);
+}
+
+static double curvature(int k, const double *x, int axis, int other)
+{
+  return -0.3 * sin(k + x[0] + 0.5 * x[1]) * (axis ? 0.5 : 1) * (other ? 0.5 : 1);
+}
+
+static double share(int k, int j)
+{
+  return cos(1.3 * k + 2.1 * j);
+}
+
+/* Give half of the square of z, and the arguments of the sines. */
+static double read_point(int count, const double *z, int at, double *sine)
+{
+  double square = 0;
+  for (int k = 1; k <= WAVES; k++) sine[k] = 0;
+  for (int j = 0; j < VARIABLES; j++) {
+    square += z[j * count + at] * z[j * count + at] / 2;
+    for (int k = 1; k <= WAVES; k++) sine[k] += share(k, j) * z[j * count + at];
+  }
+  return square;
+}
+
+static int tangle(int count, double t, const double *x, const double *z, double *l, double *l_z,
+                  double *l_zz, void *user)
+{
+  (void)t, (void)user;
+  for (int at = 0; at < count; at++) {
+    const double here[2] = {x[at], x[count + at]};
+    double s[WAVES + 1];
+    const double square = read_point(count, z, at, s);
+    if (l != NULL) l[at] = factor(0, here) * square;
+    for (int k = 1; k <= WAVES && l != NULL; k++) l[at] += factor(k, here) * sin(s[k]);
+    for (int j = 0, p = 0; j < VARIABLES; j++) {
+      if (l_z != NULL) l_z[j * count + at] = factor(0, here) * z[j * count + at];
+      for (int k = 1; k <= WAVES && l_z != NULL; k++)
+        l_z[j * count + at] += factor(k, here) * share(k, j) * cos(s[k]);
+      for (int i = 0; i <= j && l_zz != NULL; i++, p++) {
+        l_zz[p * count + at] = i == j ? factor(0, here) : 0;
+        for (int k = 1; k <= WAVES; k++)
+          l_zz[p * count + at] -= factor(k, here) * share(k, j) * share(k, i) * sin(s[k]);
+      }
+    }
+  }
+  return 0;
+}
+
+static int tangle_by_x(int count, double t, const double *x, const double *z, double *l_x,
+                       double *l_xz, double *l_xx, void *user)
+{
+  (void)t, (void)user;
+  for (int at = 0; at < count; at++) {
+    const double here[2] = {x[at], x[count + at]};
+    double s[WAVES + 1];
+    const double square = read_point(count, z, at, s);
+    for (int i = 0, p = 0; i < 2; i++) {
+      l_x[i * count + at] = slope(0, here, i) * square;
+      for (int k = 1; k <= WAVES; k++) l_x[i * count + at] += slope(k, here, i) * sin(s[k]);
+      for (int e = 0; e <= i && l_xx != NULL; e++, p++) {
+        l_xx[p * count + at] = curvature(0, here, i, e) * square;
+        for (int k = 1; k <= WAVES; k++)
+          l_xx[p * count + at] += curvature(k, here, i, e) * sin(s[k]);
+      }
+      for (int j = 0; j < VARIABLES && l_xz != NULL; j++) {
+        double *of = l_xz + (i * VARIABLES + j) * count + at;
+        *of = slope(0, here, i) * z[j * count + at];
+        for (int k = 1; k <= WAVES; k++) *of += slope(k, here, i) * share(k, j) * cos(s[k]);
+      }
+    }
+  }
+  return 0;
+}
+
+static const dvi_jet both[VARIABLES] = {{0},
+                                        {.component = 1},
+                                        {.rate = 1},
+                                        {.component = 1, .rate = 1},
+                                        {.order = {1}},
+                                        {.component = 1, .order = {1}},
+                                        {.order = {0, 1}},
+                                        {.component = 1, .order = {0, 1}}};
+static const dvi_density_part tangled = {
+    .variable = both, .variables = VARIABLES, .density = tangle};
+
+static int sway(int count, double t, const double *X, double *x, double *rate, void *user)
+{
+  (void)user;
+  for (int k = 0; k < count; k++)
+    for (int i = 0; i < 2; i++) {
+      const double phase = 2 * pi * (X[k] - (i ? 2 : -1) * X[count + k]) + t;
+      x[i * count + k] = X[i * count + k] + 0.03 * sin(phase);
+      rate[i * count + k] = 0.03 * cos(phase);
+    }
+  return 0;
+}
+
+/* Create a field, and a state whose nodes and values move. */
+static dvi_moving *create(const dvi_moving_terms *terms, double *q, double *v, double *p)
+{
+  dvi_moving *moving = NULL;
+  double x[128], rate[128], u[128], u_rate[128];
+  ck_assert_msg(!dvi_moving_create(terms, &moving), "%s", dvi_last_error());
+  const int nodes = (int)dvi_mesh_count(terms->mesh, 0);
+  for (int k = 0; k < 2 * nodes; k++) {
+    x[k] = dvi_moving_nodes(moving, NULL)[k] + 0.02 * sin(3.0 * k);
+    rate[k] = 0.4 * cos(2.0 * k);
+    u[k] = sin(1.7 * k);
+    u_rate[k] = cos(2.3 * k);
+  }
+  ck_assert_msg(!dvi_moving_project(moving, 0, x, u, rate, u_rate, q, v, p), "%s",
+                dvi_last_error());
+  return moving;
+}
+
+static void check_derivatives(const dvi_moving_terms *terms)
+{
+  double q[256], v[256];
+  dvi_system *system = NULL;
+  dvi_derivative_check found;
+  dvi_moving *moving = create(terms, q, v, NULL);
+  ck_assert_msg(!dvi_moving_system(moving, &system), "%s", dvi_last_error());
+  ck_assert_msg(!dvi_system_check(system, 0, q, v, 1e-8, &found), "%s", dvi_last_error());
+  dvi_system_destroy(&system);
+  dvi_moving_destroy(&moving);
+}
+
+static int ramp(int64_t count, double t, const double *x, double *value, void *user)
+{
+  (void)t, (void)user;
+  for (int64_t k = 0; k < count; k++) value[k] = x[k] - x[count + k];
+  return 0;
+}
+
+/* Boxes are periodic along none of their axes, one, or both. */
+START_TEST(derivatives_agree_with_differences)
+{
+  const double jump[4] = {0.7, -0.4, 0.2, 0.5};
+  const int points[3] = {1, 3, 6};
+  for (int i = 0; i < 18; i++) {
+    const int periodic = i % 3, moves = i / 3 % 2, held = i / 6 != 1;
+    const dvi_generator_options box = {.size = sizeof box,
+                                       .cells = {4, 3},
+                                       .extent = {1, 1},
+                                       .periodic = {periodic > 0, periodic > 1}};
+    const dvi_density_condition fixed = {
+        .part = "boundary", .component = i / 6 - 1, .kind = DVI_FIXED, .datum = ramp};
+    dvi_mesh *mesh = plane_mesh(&box, periodic > 1 ? shake : NULL, NULL);
+    check_derivatives(&(dvi_moving_terms){.size = sizeof(dvi_moving_terms),
+                                          .mesh = mesh,
+                                          .components = 2,
+                                          .part = &tangled,
+                                          .space_derivative = tangle_by_x,
+                                          .points = points[i / 6],
+                                          .motion = moves ? DVI_MOVING_FREE : DVI_MOVING_PRESCRIBED,
+                                          .path = moves ? NULL : sway,
+                                          .mu = moves ? 0.3 : 0,
+                                          .kappa = moves ? 0.2 : 0,
+                                          .jump = jump,
+                                          .condition = &fixed,
+                                          .conditions = held,
+                                          .slide = i % 2});
+    dvi_mesh_destroy(&mesh);
+  }
+}
+END_TEST
+
+/* ---- conservation ---- */
+
+static int bump(int64_t count, const double *x, double *u, double *u_x, double *u_t,
+                double *velocity, void *user)
+{
+  const double speed = *(const double *)user;
+  for (int64_t k = 0; k < count; k++) {
+    const double a = 2 * pi * x[k], b = 2 * pi * (x[k] + x[count + k]);
+    u[k] = 0.1 * (sin(a) + 0.5 * cos(b));
+    u_x[k] = 0.2 * pi * (cos(a) - 0.5 * sin(b));
+    u_x[count + k] = -0.1 * pi * sin(b);
+    u_t[k] = -0.1 * cos(a);
+    velocity[k] = speed;
+    velocity[count + k] = 0.3 * speed;
+  }
+  return 0;
+}
+
+/* Energy is off by the square of the step, and does not drift. */
+START_TEST(three_momenta_are_exact_and_energy_is_bounded)
+{
+  double speed = 0.2;
+  const dvi_generator_options torus = {
+      .size = sizeof torus, .cells = {3, 3}, .extent = {1, 1}, .periodic = {1, 1}};
+  dvi_mesh *mesh = plane_mesh(&torus, shake, NULL);
+  const dvi_moving_terms terms = {.size = sizeof terms,
+                                  .mesh = mesh,
+                                  .part = &plane_quartic,
+                                  .translations = 1,
+                                  .points = 3,
+                                  .mu = 0.02,
+                                  .kappa = 0.05};
+  journey j;
+  depart(&terms, bump, &speed, "midpoint", &j);
+  const char *name[] = {"energy", "momentum_x", "momentum_y", "momentum_u"};
+  for (int i = 0; i < 4; i++) ck_assert_str_eq(dvi_system_invariant_name(j.system, i), name[i]);
+  travel(&j, repeats(10000), 0.01);
+  for (int i = 1; i < 4; i++) ck_assert_msg(j.drift[i] < 1e-13, "drift %d: %g", i, j.drift[i]);
+  ck_assert_msg(j.drift[0] < 0.02 * j.first[0], "%g of %g", j.drift[0], j.first[0]);
+  arrive(&j);
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
+
+/* ---- a kink along the diagonal ---- */
+
+/* Follow a kink of speed 0.9 along the diagonal of a torus, with nodes that rest on equal cells, or
+ * travel with it. */
+static void follow_kink(int cells, dvi_moving_motion motion, journey *j)
+{
+  plane_kink fast = {.v = 0.9, .period = 10};
+  const double jump[2] = {2 * pi, 2 * pi}, length = 10 * sqrt(2);
+  const int moves = motion == DVI_MOVING_FREE, nodes = cells * cells;
+  const dvi_generator_options torus = {.size = sizeof torus,
+                                       .cells = {cells, cells},
+                                       .extent = {length, length},
+                                       .periodic = {1, 1}};
+  dvi_mesh *mesh = plane_mesh(&torus, moves ? grade_for_kink : NULL, &fast);
+  const dvi_moving_terms terms = {.size = sizeof terms,
+                                  .mesh = mesh,
+                                  .part = &plane_sine_gordon,
+                                  .translations = 1,
+                                  .points = 6,
+                                  .motion = motion,
+                                  .mu = moves ? 0.01 : 0,
+                                  .kappa = moves ? 0.05 : 0,
+                                  .jump = jump};
+  depart(&terms, plane_kink_wave, &fast, "midpoint", j);
+  travel(j, 100, 0.1);
+  for (int k = 0; k < nodes; k++) {
+    const double place[2] = {j->x[k], j->x[nodes + k]};
+    j->error = fmax(j->error, fabs(j->u[k] - plane_kink_value(&fast, 10, place)));
+  }
+  dvi_mesh_destroy(&mesh);
+}
+
+/* Momenta are 221. */
+START_TEST(kink_travels_with_its_nodes)
+{
+  journey j;
+  follow_kink(16, DVI_MOVING_FREE, &j);
+  ck_assert_double_eq_tol(j.error, 0.4685, 1e-3);
+  ck_assert_msg(j.drift[1] < 1e-12 && j.drift[2] < 1e-12, "%g %g", j.drift[1], j.drift[2]);
+  arrive(&j);
+}
+END_TEST
+
+START_TEST(kink_outruns_nodes_that_rest)
+{
+  journey j;
+  follow_kink(16, DVI_MOVING_PRESCRIBED, &j);
+  ck_assert_double_eq_tol(j.error, 2.4957, 1e-3);
+  arrive(&j);
+}
+END_TEST
+
+/* ---- order ---- */
+
+static const double amplitude = 0.1, omega = 2 * 3.14159265358979323846 * 1.41421356237309504880;
+
+static int standing(int64_t count, const double *x, double *u, double *u_x, double *u_t,
+                    double *velocity, void *user)
+{
+  (void)u_t, (void)user;
+  for (int64_t k = 0; k < count; k++) {
+    const double a = 2 * pi * x[k], b = 2 * pi * x[count + k];
+    u[k] = amplitude * cos(a) * cos(b);
+    u_x[k] = -2 * pi * amplitude * sin(a) * cos(b);
+    u_x[count + k] = -2 * pi * amplitude * cos(a) * sin(b);
+    velocity[k] = 0.3 * sin(b);
+    velocity[count + k] = 0.2;
+  }
+  return 0;
+}
+
+/* Give the root of the mean square error at nodes of a standing wave on a torus. */
+static double standing_error(int cells, dvi_moving_motion motion)
+{
+  double t = 0.25, gently = 0.3;
+  const int moves = motion == DVI_MOVING_FREE, nodes = cells * cells;
+  const dvi_generator_options torus = {
+      .size = sizeof torus, .cells = {cells, cells}, .extent = {1, 1}, .periodic = {1, 1}};
+  dvi_mesh *mesh = plane_mesh(&torus, shake, &gently);
+  const dvi_moving_terms terms = {.size = sizeof terms,
+                                  .mesh = mesh,
+                                  .part = &plane_wave,
+                                  .translations = 1,
+                                  .points = 3,
+                                  .motion = motion,
+                                  .path = moves ? NULL : sway,
+                                  .mu = moves ? 1.0 / nodes : 0,
+                                  .kappa = moves ? 1 : 0};
+  journey j;
+  depart(&terms, standing, NULL, "midpoint", &j);
+  travel(&j, 2 * cells, t / (2 * cells));
+  double sum = 0;
+  for (int k = 0; k < nodes; k++) {
+    const double a = 2 * pi * j.x[k], b = 2 * pi * j.x[nodes + k];
+    sum += pow(j.u[k] - amplitude * cos(a) * cos(b) * cos(omega * t), 2) / nodes;
+  }
+  arrive(&j);
+  dvi_mesh_destroy(&mesh);
+  return sqrt(sum);
+}
+
+/* The mesh is coarse for the first of the sizes, whose order is below 2. */
+static void check_order(dvi_moving_motion motion)
+{
+  double order = 0, last = standing_error(6, motion);
+  for (int cells = 12; cells <= 24; cells *= 2) {
+    const double error = standing_error(cells, motion), before = order;
+    order = log2(last / error);
+    ck_assert_msg(order > before, "order %g with %d cells", order, cells);
+    last = error;
+  }
+  ck_assert_double_eq_tol(order, 2, 0.15);
+}
+
+START_TEST(waves_have_second_order_on_free_nodes)
+{
+  check_order(DVI_MOVING_FREE);
+}
+END_TEST
+
+START_TEST(waves_have_second_order_on_nodes_with_a_path)
+{
+  check_order(DVI_MOVING_PRESCRIBED);
+}
+END_TEST
+
+enum { BUMP = 3 * 16 /* coordinates */ };
+
+/* Take a bump on free nodes to t = 0.5, and give the coordinates there. */
+static void pass(int steps, double *q)
+{
+  double speed = 0.2;
+  const dvi_generator_options torus = {
+      .size = sizeof torus, .cells = {4, 4}, .extent = {1, 1}, .periodic = {1, 1}};
+  dvi_mesh *mesh = plane_mesh(&torus, shake, NULL);
+  const dvi_moving_terms terms = {.size = sizeof terms,
+                                  .mesh = mesh,
+                                  .part = &plane_quartic,
+                                  .translations = 1,
+                                  .mu = 0.02,
+                                  .kappa = 0.05};
+  journey j;
+  depart(&terms, bump, &speed, "midpoint", &j);
+  travel(&j, steps, 0.5 / steps);
+  memcpy(q, dvi_integrator_q(j.integrator), BUMP * sizeof *q);
+  arrive(&j);
+  dvi_mesh_destroy(&mesh);
+}
+
+/* The state that is compared has 8 times the steps of the last one, so that its error adds 0.02 to
+ * the last order. */
+START_TEST(midpoint_has_second_order_in_time)
+{
+  double exact[BUMP], q[BUMP], last = 0;
+  pass(1280, exact);
+  for (int steps = 20; steps <= 160; steps *= 2) {
+    double error = 0;
+    pass(steps, q);
+    for (int i = 0; i < BUMP; i++) error = fmax(error, fabs(q[i] - exact[i]));
+    if (steps > 20) ck_assert_double_eq_tol(log2(last / error), 2, 0.1);
+    last = error;
+  }
+}
+END_TEST
+
+/* ---- static states ---- */
+
+static int one(int64_t count, double t, const double *x, double *value, void *user)
+{
+  (void)t, (void)x, (void)user;
+  for (int64_t k = 0; k < count; k++) value[k] = 1;
+  return 0;
+}
+
+static int flat(int64_t count, const double *x, double *u, double *u_x, double *u_t,
+                double *velocity, void *user)
+{
+  (void)x, (void)u_x, (void)u_t, (void)velocity, (void)user;
+  for (int64_t k = 0; k < count; k++) u[k] = 1;
+  return 0;
+}
+
+/* Give the energy of a layer at the sides of a box, without the part of kappa. */
+static double layer_energy(int cells, dvi_moving_motion motion)
+{
+  const double side = 20;
+  const dvi_generator_options box = {
+      .size = sizeof box, .cells = {cells, cells}, .extent = {side, side}};
+  const dvi_density_condition rim = {
+      .part = "boundary", .component = -1, .kind = DVI_FIXED, .datum = one};
+  dvi_mesh *mesh = plane_mesh(&box, NULL, NULL);
+  const dvi_moving_terms terms = {.size = sizeof terms,
+                                  .mesh = mesh,
+                                  .part = &plane_massive,
+                                  .translations = 1,
+                                  .motion = motion,
+                                  .mu = motion == DVI_MOVING_FREE,
+                                  .kappa = motion == DVI_MOVING_FREE ? 1e-4 : 0,
+                                  .condition = &rim,
+                                  .conditions = 1,
+                                  .slide = 1};
+  double q[JOURNEY_MOST];
+  dvi_moving *moving = NULL;
+  dvi_moving_report report;
+  ck_assert_msg(!dvi_moving_create(&terms, &moving), "%s", dvi_last_error());
+  ck_assert_msg(!dvi_moving_start(moving, flat, NULL, q, NULL, NULL), "%s", dvi_last_error());
+  ck_assert_msg(!dvi_moving_solve(moving, q, &report), "%s", dvi_last_error());
+  dvi_moving_destroy(&moving);
+  dvi_mesh_destroy(&mesh);
+  return report.energy - report.barrier;
+}
+
+/* The energy is 200 (1 - sum over odd m, n of 64/(pi^4 m^2 n^2 (1 + pi^2 (m^2 + n^2)/400))). The
+ * integral of the linear field is exact, and cannot be below. */
+START_TEST(free_nodes_lower_the_energy_of_a_layer)
+{
+  const double exact = 37.453521, even[2] = {15.240, 4.480}, freed[2] = {0.881, 0.287};
+  for (int k = 0; k < 2; k++) {
+    const double of_even = layer_energy(6 << k, DVI_MOVING_PRESCRIBED) - exact;
+    const double of_free = layer_energy(6 << k, DVI_MOVING_FREE) - exact;
+    ck_assert_double_eq_tol(of_even, even[k], 1e-3);
+    ck_assert_double_eq_tol(of_free, freed[k], 1e-3);
+  }
+}
+END_TEST
+
+/* ---- paths that are given ---- */
+
+static int affine(int64_t count, const double *x, double *u, double *u_x, double *u_t,
+                  double *velocity, void *user)
+{
+  (void)velocity, (void)user;
+  for (int64_t k = 0; k < count; k++) {
+    u[k] = 1.3 * x[k] - 0.4 * x[count + k];
+    u_x[k] = 1.3;
+    u_x[count + k] = -0.4;
+    u_t[k] = 0.7;
+  }
+  return 0;
+}
+
+static const double affine_jump[2] = {1.3, -0.4};
+
+/* Areas of cells are squares of the time, which two points a step integrate. The field takes a
+ * rounding of its size, at most 3, each step. */
+START_TEST(prescribed_nodes_keep_affine_fields)
+{
+  const dvi_generator_options torus = {
+      .size = sizeof torus, .cells = {5, 4}, .extent = {1, 1}, .periodic = {1, 1}};
+  dvi_mesh *mesh = plane_mesh(&torus, shake, NULL);
+  const dvi_moving_terms terms = {.size = sizeof terms,
+                                  .mesh = mesh,
+                                  .part = &plane_wave,
+                                  .translations = 1,
+                                  .motion = DVI_MOVING_PRESCRIBED,
+                                  .path = sway,
+                                  .path_step = 0.05,
+                                  .jump = affine_jump};
+  journey j;
+  depart(&terms, affine, NULL, "galerkin:degree=1,nodes=2", &j);
+  travel(&j, 20, 0.05);
+  for (int k = 0; k < 20; k++)
+    ck_assert_double_eq_tol(j.u[k], 0.7 + 1.3 * j.x[k] - 0.4 * j.x[20 + k], 5e-15);
+  arrive(&j);
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
+
+START_TEST(periodic_fields_repeat_with_their_jumps)
+{
+  const dvi_generator_options torus = {
+      .size = sizeof torus, .cells = {5, 4}, .extent = {1, 1}, .periodic = {1, 1}};
+  dvi_mesh *mesh = plane_mesh(&torus, shake, NULL);
+  const dvi_moving_terms terms = {.size = sizeof terms,
+                                  .mesh = mesh,
+                                  .part = &plane_wave,
+                                  .translations = 1,
+                                  .mu = 1,
+                                  .jump = affine_jump};
+  double q[60], x[128], u[64];
+  dvi_moving *moving = NULL;
+  ck_assert_msg(!dvi_moving_create(&terms, &moving), "%s", dvi_last_error());
+  ck_assert_msg(!dvi_moving_start(moving, affine, NULL, q, NULL, NULL), "%s", dvi_last_error());
+  for (int k = 0; k < 60; k++) q[k] += k % 3 == 2 ? 0 : 5; /* nodes move, values stay */
+  for (int k = 0; k < 64; k++) x[k] = -2 + 0.07 * k, x[64 + k] = 3 - 0.11 * k;
+  for (int slope = 0; slope <= 2; slope++) {
+    const double by[3] = {NAN, 1.3, -0.4};
+    ck_assert_msg(!dvi_moving_evaluate(moving, 0, q, slope, 64, x, u), "%s", dvi_last_error());
+    for (int k = 0; k < 64; k++) {
+      const double value = 1.3 * (x[k] - 5) - 0.4 * (x[64 + k] - 5);
+      ck_assert_double_eq_tol(u[k], slope ? by[slope] : value, 1e-13);
+    }
+  }
+  dvi_moving_destroy(&moving);
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
+
+/* ---- tangled meshes ---- */
+
+static int crash(int64_t count, const double *x, double *u, double *u_x, double *u_t,
+                 double *velocity, void *user)
+{
+  double speed = 0;
+  const int returned = bump(count, x, u, u_x, u_t, velocity, user != NULL ? user : &speed);
+  for (int64_t k = 0; k < count; k++) velocity[k] = -5 * sin(2 * pi * x[k]);
+  return returned;
+}
+
+START_TEST(tangled_mesh_is_named)
+{
+  const dvi_generator_options torus = {
+      .size = sizeof torus, .cells = {5, 5}, .extent = {1, 1}, .periodic = {1, 1}};
+  dvi_mesh *mesh = plane_mesh(&torus, NULL, NULL);
+  const dvi_moving_terms terms = {
+      .size = sizeof terms, .mesh = mesh, .part = &plane_wave, .translations = 1, .mu = 1};
+  journey j;
+  depart(&terms, crash, NULL, "midpoint", &j);
+  dvi_status status = DVI_OK;
+  for (int k = 0; k < 100 && !status; k++) status = dvi_integrator_step(j.integrator, 0.01);
+  ck_assert_int_eq(status, DVI_CALLBACK_RETRY);
+  check_words("the mesh is tangled, cell ");
+  check_words(" of 50 at (");
+  check_words("take a smaller step or a larger kappa");
+  arrive(&j);
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
+
+/* ---- bad input ---- */
+
+static int nowhere(int64_t count, double t, const double *x, double *value, void *user)
+{
+  (void)t, (void)x, (void)user;
+  for (int64_t k = 0; k < count; k++) value[k] = NAN;
+  return 0;
+}
+
+static int failing(int64_t count, double t, const double *x, double *value, void *user)
+{
+  (void)count, (void)t, (void)x, (void)value, (void)user;
+  return 7;
+}
+
+#define REFUSE(status, words, ...)                                                            \
+  do {                                                                                        \
+    dvi_moving_terms terms = {                                                                \
+        .size = sizeof terms, .mesh = mesh, .part = &plane_wave, .translations = 1, .mu = 1}; \
+    dvi_moving *moving = (dvi_moving *)&terms;                                                \
+    terms.__VA_ARGS__;                                                                        \
+    ck_assert_msg(dvi_moving_create(&terms, &moving) == (status), "%s", words);               \
+    ck_assert(moving == NULL);                                                                \
+    check_words(words);                                                                       \
+  } while (0)
+
+#define REFUSE_CONDITION(status, words, ...)                      \
+  do {                                                            \
+    const dvi_density_condition it = {__VA_ARGS__};               \
+    REFUSE(status, words, condition = &it; terms.conditions = 1); \
+  } while (0)
+
+START_TEST(bad_terms_are_refused)
+{
+  const dvi_generator_options box = {.size = sizeof box, .cells = {3, 3}};
+  const double bad[2] = {0, NAN};
+  const dvi_moving_mean mean = {0};
+  dvi_mesh *mesh = plane_mesh(
+      &(dvi_generator_options){.size = sizeof box, .cells = {3, 3}, .extent = {1, 1}}, NULL, NULL);
+  REFUSE(DVI_BAD_ARGUMENT, "a mesh is given, and an axis", cells = 4);
+  REFUSE(DVI_BAD_ARGUMENT, "and a mean over cells", mean = &mean);
+  REFUSE(DVI_BAD_ARGUMENT, "and ends", left.kind = DVI_FIXED);
+  REFUSE(DVI_BAD_ARGUMENT, "and viscosity", viscosity = 1);
+  REFUSE(DVI_BAD_ARGUMENT, "and dispersion", dispersion = 1);
+  REFUSE(DVI_BAD_ARGUMENT, "and equal arcs", motion = DVI_MOVING_EQUAL);
+  REFUSE(DVI_BAD_SIZE, "2 points a triangle asked, 1, 3 or 6 possible", points = 2);
+  REFUSE(DVI_BAD_ARGUMENT, "the jump of component 0 is nan", jump = bad);
+  REFUSE(DVI_BAD_ARGUMENT, "need a mesh", mesh = NULL; terms.axis.to = 1; terms.cells = 2;
+         terms.slide = 1);
+  REFUSE(DVI_BAD_ARGUMENT, "2 conditions are not given", conditions = 2);
+  REFUSE_CONDITION(DVI_BAD_ARGUMENT, "is set on \"rim\", which is no part", .part = "rim");
+  REFUSE_CONDITION(DVI_BAD_ARGUMENT, "is of component 3 of 1", .part = "boundary", .component = 3);
+  REFUSE_CONDITION(DVI_BAD_ARGUMENT, "has a flux, a rate or robin", .part = "boundary",
+                   .datum = one);
+  REFUSE_CONDITION(DVI_CALLBACK_FAILED, "returned 7", .part = "all", .kind = DVI_FIXED,
+                   .datum = failing);
+  REFUSE_CONDITION(DVI_NOT_FINITE, "is nan at (", .part = "all", .kind = DVI_FIXED,
+                   .datum = nowhere);
+  dvi_mesh_destroy(&mesh);
+  ck_assert(!dvi_mesh_generate("box", &box, &mesh));
+  REFUSE(DVI_UNSUPPORTED, "the mesh has boxes of dimension 2", mu = 2);
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
+
+START_TEST(free_nodes_of_a_mesh_need_a_mass)
+{
+  const dvi_generator_options box = {.size = sizeof box, .cells = {3, 3}, .extent = {1, 1}};
+  dvi_mesh *mesh = plane_mesh(&box, NULL, NULL);
+  double q[64], speed = 0;
+  dvi_moving *moving = NULL;
+  ck_assert(!dvi_moving_create(
+      &(dvi_moving_terms){
+          .size = sizeof(dvi_moving_terms), .mesh = mesh, .part = &plane_wave, .translations = 1},
+      &moving));
+  ck_assert_int_eq(dvi_moving_start(moving, bump, &speed, q, NULL, NULL), DVI_SINGULAR);
+  check_words("give mu > 0, or prescribe the nodes");
+  dvi_moving_destroy(&moving);
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
+
+SUITE(moving_planes)
+{
+  tcase_add_test(tests, derivatives_agree_with_differences);
+  tcase_add_test(tests, three_momenta_are_exact_and_energy_is_bounded);
+  tcase_add_test(tests, kink_travels_with_its_nodes);
+  tcase_add_test(tests, kink_outruns_nodes_that_rest);
+  tcase_add_test(tests, waves_have_second_order_on_free_nodes);
+  tcase_add_test(tests, waves_have_second_order_on_nodes_with_a_path);
+  tcase_add_test(tests, midpoint_has_second_order_in_time);
+  tcase_add_test(tests, free_nodes_lower_the_energy_of_a_layer);
+  tcase_add_test(tests, prescribed_nodes_keep_affine_fields);
+  tcase_add_test(tests, periodic_fields_repeat_with_their_jumps);
+  tcase_add_test(tests, tangled_mesh_is_named);
+  tcase_add_test(tests, bad_terms_are_refused);
+  tcase_add_test(tests, free_nodes_of_a_mesh_need_a_mass);
+}
