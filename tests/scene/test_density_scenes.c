@@ -337,7 +337,7 @@ START_TEST(probes_are_values_derivatives_and_integrals)
   requires_near(value[watched("rate")], 0.3 * sin(1), 1e-13);
   requires_near(value[watched("mass")], 3 * pi, 1e-12);
   requires_near(value[watched("current")], 0.15 * pi, 1e-13);
-  requires_near(value[watched("current")], -value[watched("momentum_x")], 1e-13);
+  requires_near(value[watched("current")], value[watched("momentum_x")], 1e-13);
   requires_near(value[watched("power")], value[0], 1e-12);
 }
 END_TEST

@@ -157,8 +157,8 @@ dvi_status dvi_density_solve(const dvi_density *density, double *U, dvi_field_so
  *
  *  With kinetic parts it has a constant mass, the potential "quadratic", which is fast, and one
  *  potential for each other part. With a one-form it is of first order, and with general parts a
- *  general Lagrangian. Periodic axes give momenta "momentum_x" and so on, if the terms say so and
- *  the space keeps translations (fourier).
+ *  general Lagrangian. Periodic axes give momenta "momentum_x" and so on, -int u' u_x for a mass
+ *  1, if the terms say so and the space keeps translations (fourier).
  *
  *  Values that move, G(t), stay in L, with a vector potential A(t) = M_ID G' of the masses M_ID
  *  between coordinates and them, unless these are 0, as lumped ones are. Where a one-form does not

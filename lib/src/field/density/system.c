@@ -189,7 +189,8 @@ static int general_rate(double t, const double *q, const double *v, double *L_t,
 
 /* ---- symmetries ---- */
 
-/* xi = D q with the derivative along an axis. */
+/* A field that is moved to larger x by a has the values u(x - a), so that xi = -D q with the
+ * derivative along an axis. */
 static int translate(const double *q, double *xi, void *user)
 {
   const struct dvi__field_translation *translation = user;
@@ -201,7 +202,7 @@ static int translate(const double *q, double *xi, void *user)
     const int64_t function = d->unknown[i] % d->functions;
     const dvi__fourier_image image = dvi__fourier_derivative(d->space, order, function);
     const int other = d->number[d->unknown[i] - function + image.other];
-    if (other >= 0) xi[other] += image.factor * q[i];
+    if (other >= 0) xi[other] -= image.factor * q[i];
   }
   return 0;
 }
