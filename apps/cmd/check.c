@@ -10,6 +10,7 @@
 
 #include "cli/command.h"
 #include "cli/options.h"
+#include "load/density.h"
 #include "load/open.h"
 #include "load/open_march.h"
 #include "load/scene.h"
@@ -309,6 +310,7 @@ int check_command(int argc, char **argv)
   code = is_grid || dvi_scene_marches(scene->scene, r.method) ? check_march(scene, r.method)
                                                               : check_system(scene, r.method);
   if (code == DONE && !is_grid) scene_tell(scene);
+  if (code == DONE) density_warn_growth("check", scene);
   warn_unused(scene);
   problem_destroy(&scene);
   return code;

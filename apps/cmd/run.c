@@ -239,6 +239,7 @@ static int run_march(run_request *request, const problem *scene)
   int code = run_check_settings(request, scene);
   if (code == DONE) code = run_check_end(request, scene);
   if (request->method == NULL) request->method = scene->method;
+  if (code == DONE) density_warn_growth("run", scene);
   return code == DONE ? field_run(request, scene) : code;
 }
 

@@ -1,6 +1,7 @@
 #include "load/density.h"
 
 #include <dvi/scene.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -27,6 +28,21 @@ void density_warn(const char *command, const problem *scene, const char *method)
   complain("%s: %s does not keep the norm of the wave function; midpoint, gauss:stages=2, "
            "split:order=4 and vprk do",
            command, method);
+}
+
+/* Potentials beside the quadratic one, and general Lagrangians, may stop what grows. */
+void density_warn_growth(const char *command, const problem *scene)
+{
+  const dvi_density *density = density_of(scene);
+  dvi_system_terms terms;
+  double least = 0.0;
+  if (density == NULL || dvi_density_system_terms(density, &terms) != DVI_OK) return;
+  if (terms.potential_count > 1 || terms.lagrangian != NULL) return;
+  if (dvi_density_least(density, &least) != DVI_OK || !(least < 0.0)) return;
+  complain("%s: the energy is not bounded from below: the least omega^2 of the quadratic part is "
+           "%.6g, and modes grow as exp(%.6g t); is a sign of the density wrong, as in "
+           "u'^2/2 - d(u,x)^2/2?",
+           command, least, sqrt(-least));
 }
 
 int64_t field_unknowns(const problem *scene)

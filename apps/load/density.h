@@ -15,6 +15,9 @@ bool has_field(const problem *scene);
 /** Tell that a mechanical method does not keep the norm of Schroedinger's equation. */
 void density_warn(const char *command, const problem *scene, const char *method);
 
+/** Tell that small fields grow without bound, as those of a density with a wrong sign. */
+void density_warn_growth(const char *command, const problem *scene);
+
 /** Return the number of unknowns of a field. */
 int64_t field_unknowns(const problem *scene);
 

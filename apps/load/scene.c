@@ -244,6 +244,7 @@ void scene_warn(const char *command, const problem *scene)
 {
   char kink[KINK_SIZE];
   if (dvi_scene_kink(scene->scene, kink, sizeof kink) >= 0) complain("%s: %s", command, kink);
+  density_warn_growth(command, scene);
 }
 
 static void print_operations(const char *of, int operations, long points)

@@ -119,4 +119,35 @@ about out norm 3.0787608005180 1e-10
 expect 2 'a method is needed' run plane.yaml
 says err 'for example --method vprk' 'a method for one-forms'
 
+# ---- densities with a wrong sign ----
+
+sed "s/^density.*/density: u'^2\/2 + d(u,x)^2\/2/; s/^step.*/step: 0.01/; s/^sweep.*//" \
+  pulse.yaml >wrong.yaml
+expect 0 'a field that grows' run wrong.yaml --method midpoint --h 0.01 --t-end 0.1 --final
+says err 'run: the energy is not bounded from below: the least omega^2 .* is -' 'a warning'
+expect 0 'a field that grows' check wrong.yaml --method midpoint
+says err 'check: the energy is not bounded from below' 'a warning'
+says out "potential 'quadratic' is not bounded from below: its least omega^2 is -" 'the fact'
+# Higgs: a potential may hold what grows.
+sed "s/^density.*/density: u'^2\/2 - d(u,x)^2\/2 + u^2\/2 - u^4\/4/; s/^sweep.*//" \
+  pulse.yaml >wells.yaml
+expect 0 'wells' run wells.yaml --final
+[ ! -s err ] || fail 'a field between wells needs no warning'
+expect 0 'wells' explain wells.yaml
+says out 'its least omega^2 is -1, whose mode grows as exp(1 t)' 'the fact'
+
+# ---- lumped masses and ends that move ----
+
+cat >two.yaml <<END
+domain: {x: [0, 1]}
+space: fem:degree=2,cells=10,lumped=yes
+fields: {u: scalar, v: scalar}
+density: u'^2/2 + v'^2/2 - d(u,x)^2/2 - (d(v,x) + u)^2/2
+boundary: {left: {u: {fixed: sin(t)}, v: free}}
+method: verlet
+step: 0.001
+until: 0.01
+END
+expect 0 'an end that moves beside one that is free' run two.yaml --final
+
 finish

@@ -132,6 +132,16 @@ dvi_status dvi_density_matrix(const dvi_density *density, dvi_field_operator nam
  *  @retval (others)         as dvi_matrix_modes */
 dvi_status dvi_density_fastest(const dvi_density *density, double *omega);
 
+/** Find the least eigenvalue of the quadratic parts against the mass, if it is negative, and 0
+ *  otherwise. With lambda < 0 a small field can grow as exp(sqrt(-lambda) t), and without
+ *  potentials that stop it the energy is not bounded from below. Quadratic parts whose density is
+ *  positive semidefinite at each point take no matrices.
+ *
+ *  @retval DVI_UNSUPPORTED  the field has no mass, or too many unknowns in three dimensions
+ *  @retval DVI_SINGULAR     the mass is not positive definite
+ *  @retval (others)         as dvi_matrix_modes */
+dvi_status dvi_density_least(const dvi_density *density, double *lambda);
+
 /** Compute the eigenvalues of K x = lambda M x nearest to a shift, with K the Hessian of all parts
  *  without rates at a static state. Of a field of first order they are the eigenvalues lambda of
  *  H x = lambda N x, with N the density of the norm (docs/fields/schroedinger.md).

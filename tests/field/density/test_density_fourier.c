@@ -372,7 +372,7 @@ START_TEST(kdv_agrees_with_differences)
 }
 END_TEST
 
-/* H = int u_xx^2.. is -32/5 of this soliton, int u^2/2 = 8/3 is its momentum. */
+/* H = int u_xx^2.. is -32/5 of this soliton, and -int u^2/2 = -8/3 its momentum. */
 START_TEST(solitons_have_known_invariants)
 {
   density_field field = make_kdv("fourier:modes=40,points=128");
@@ -381,8 +381,8 @@ START_TEST(solitons_have_known_invariants)
   ck_assert_int_eq(dvi_system_momentum(field.system, 0, field.q, field.q, field.p), DVI_OK);
   ck_assert_int_eq(dvi_system_invariants(field.system, 0, field.q, field.p, invariant), DVI_OK);
   ck_assert_double_eq_tol(invariant[0], -32.0 / 5, 1e-5);
-  /* p.D psi = int psi_x^2/2 = int u^2/2 - m int u + m^2 L/2 */
-  ck_assert_double_eq_tol(invariant[1], 8.0 / 3 - 0.4, 1e-6);
+  /* -p.D psi = -int psi_x^2/2 = -int u^2/2 + m int u - m^2 L/2 */
+  ck_assert_double_eq_tol(invariant[1], 0.4 - 8.0 / 3, 1e-6);
   end_density(&field);
 }
 END_TEST

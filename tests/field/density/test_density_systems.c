@@ -393,8 +393,48 @@ START_TEST(lift_undoes_project)
 }
 END_TEST
 
+static const double growing = 0.5;
+
+/* u^2/4, which the elastic part alone does not hold. */
+static int hill(int count, double t, const double *x, const double *z, double *l, double *l_z,
+                double *l_zz, void *user)
+{
+  (void)t, (void)x, (void)user;
+  for (int k = 0; k < count; k++) {
+    if (l != NULL) l[k] = growing * z[k] * z[k] / 2;
+    if (l_z != NULL) l_z[k] = growing * z[k];
+    if (l_zz != NULL) l_zz[k] = growing;
+  }
+  return 0;
+}
+
+/* With the hill the least eigenvalue is that of the constant field. */
+START_TEST(least_eigenvalue_tells_of_growth)
+{
+  const dvi_jet value = {0};
+  const dvi_density_part parts[] = {kinetic_part,
+                                    elastic_part,
+                                    {.name = "hill",
+                                     .kind = DVI_DENSITY_QUADRATIC,
+                                     .variable = &value,
+                                     .variables = 1,
+                                     .density = hill}};
+  for (int i = 0; i < KINDS; i++)
+    for (int with_hill = 0; with_hill < 2; with_hill++) {
+      density_field field = make_density(make_density_space(kinds[i], 1, -1, 2, 0), parts,
+                                         2 + with_hill, NULL, 0);
+      double lambda = 1;
+      ck_assert_int_eq(dvi_density_least(field.density, &lambda), DVI_OK);
+      ck_assert_double_eq_tol(lambda, with_hill ? -growing : 0, 1e-9);
+      end_density(&field);
+    }
+  ck_assert_int_eq(dvi_density_least(NULL, NULL), DVI_BAD_ARGUMENT);
+}
+END_TEST
+
 SUITE(density_systems)
 {
+  tcase_add_test(tests, least_eigenvalue_tells_of_growth);
   tcase_add_test(tests, callbacks_agree_with_differences_on_intervals);
   tcase_add_test(tests, callbacks_agree_with_differences_on_circles);
   tcase_add_test(tests, callbacks_agree_with_differences_on_squares);

@@ -1,4 +1,6 @@
 /* What a field consists of, in words. */
+#include <math.h>
+
 #include "field/density/density.h"
 #include "field/space/kind.h"
 
@@ -41,6 +43,16 @@ static void write_hessian(dvi__note *p, const dvi__integral *integral, const dvi
                   (long long)dvi__integral_entries(integral, pattern));
 }
 
+static void write_growth(dvi__note *p, const dvi_density *d)
+{
+  double least = 0;
+  if (dvi_density_least(d, &least) == DVI_OK && least < 0)
+    dvi__note_add(p,
+                  "potential 'quadratic' is not bounded from below: its least omega^2 is %.6g, "
+                  "whose mode grows as exp(%.6g t)\n",
+                  least, sqrt(-least));
+}
+
 static void write_potentials(dvi__note *p, const dvi_density *d)
 {
   if (d->quadratic.parts > 0) {
@@ -48,6 +60,7 @@ static void write_potentials(dvi__note *p, const dvi_density *d)
                   d->quadratic.parts == 1 ? "" : "s", (long long)d->stiffness.start[d->unknowns]);
     if (d->fastest > 0) dvi__note_add(p, ", frequencies up to %.6g", d->fastest);
     dvi__note_add(p, "\n");
+    write_growth(p, d);
   }
   for (int i = 0; i < d->potentials; i++) {
     const dvi__integral *potential = d->potential + i;

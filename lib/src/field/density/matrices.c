@@ -245,7 +245,8 @@ dvi_status dvi__density_find_fastest(dvi_density *density)
   double bound = 0;
   const dvi_status status = dvi__largest_eigenvalue(&pencil, &bound);
   if (status == DVI_SINGULAR) return DVI_OK; /* an indefinite mass has no largest frequency */
-  density->fastest = isfinite(bound) && bound > 0 ? sqrt(bound) : 0;
+  const double roundoff = 1e-12 * dvi__largest_entry(&K) / dvi__largest_entry(&M);
+  density->fastest = isfinite(bound) && bound > roundoff ? sqrt(bound) : 0;
   return status;
 }
 

@@ -341,20 +341,28 @@ static dvi_lagrangian general_term(dvi_density *d)
                           .user = &d->lagrangian};
 }
 
-/* Tell if the rate at a point is one of a coordinate and of a value that moves. With masses at the
- * nodes there is no such point, A is 0, and explicit methods apply. */
+/* Tell if a variable at a point has coordinates, and if it has values that move. */
+static int is_free(const dvi__jet_rows *rows, int64_t k)
+{
+  return rows->start[k + 1] > rows->start[k];
+}
+
+static int is_moving(const dvi__jet_rows *rows, int64_t k)
+{
+  return rows->moving.rows > 0 && rows->moving.start[k + 1] > rows->moving.start[k];
+}
+
+/* Tell if a pair of rates at a point is one of a coordinate and of a value that moves. With masses
+ * at the nodes there is no such point, A is 0, and explicit methods apply. */
 static int has_vector_potential(const dvi_density *d)
 {
   for (int p = 0; p < d->kinetic.parts && d->moving > 0; p++) {
     const dvi__density_part *part = d->kinetic.part[p];
-    for (int64_t k = 0; k < part->points; k++) {
-      int free = 0, moves = 0;
-      for (int a = 0; a < part->given.variables; a++) {
-        const dvi__jet_rows *rows = part->rows + a;
-        free |= rows->start[k + 1] > rows->start[k];
-        moves |= rows->moving.rows > 0 && rows->moving.start[k + 1] > rows->moving.start[k];
-      }
-      if (free && moves) return 1;
+    for (int e = 0; e < part->given.pairs; e++) {
+      const dvi__jet_rows *a = part->rows + part->given.pair[e][0],
+                          *b = part->rows + part->given.pair[e][1];
+      for (int64_t k = 0; k < part->points; k++)
+        if ((is_free(a, k) && is_moving(b, k)) || (is_free(b, k) && is_moving(a, k))) return 1;
     }
   }
   return 0;
