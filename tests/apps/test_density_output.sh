@@ -159,6 +159,15 @@ says err 'all steps of the density of .breather.yaml. are equal' 'the reason'
 expect 2 'a gradient' gradient breather.yaml
 says err 'has no Lagrangian of R^n' 'the reason'
 
+expect 2 'a march at once' path lattice.yaml --ends initial --steps 3
+says err 'multisymplectic is a march of a field' 'the reason'
+expect 2 'a march at several points' sweep lattice.yaml --set w=0.5,0.6 --out x.csv
+says err 'multisymplectic is a march of a field' 'the reason'
+expect 2 'digits of a march' run lattice.yaml --verify
+says err '--verify is for mechanical methods' 'the reason'
+expect 2 'a path of first order' path trap.yaml --ends initial --steps 3
+says err 'its equations are of first order' 'the reason'
+
 # All of a path at once. On the circle all frequencies are whole numbers, so that values at t = 0
 # and t = pi say nothing of the motion between.
 cat >circle.yaml <<END

@@ -114,7 +114,9 @@ const dvi_space *dvi_density_space(const dvi_density *density);
 int dvi_density_components(const dvi_density *density);
 
 /** Return the places [unknowns] in U [components*functions] of the coordinates, and their number.
- *  Coordinates of one function stand together. Owned by the field. */
+ *  Coordinates of one function stand together. They follow the order of the functions, but on a
+ *  circle of a sparse space that of 0, n-1, 1, n-2, .., where neighbours are near each other. Owned
+ *  by the field. */
 const int *dvi_density_unknowns(const dvi_density *density, int64_t *unknowns);
 
 /** Give the mass or the stiffness, the Hessian of the quadratic parts with a minus sign, of the

@@ -201,8 +201,54 @@ START_TEST(steps_that_are_taken_together_have_the_bits_of_single_ones)
 }
 END_TEST
 
+/* l = u^4, by which a field of 5 is not finite soon after 0.07. */
+static int explosive(int count, double t, const double *x, const double *z, double *l, double *l_z,
+                     double *l_zz, void *user)
+{
+  (void)t, (void)x, (void)user;
+  for (int k = 0; k < count; k++) {
+    if (l != NULL) l[k] = pow(z[k], 4);
+    if (l_z != NULL) l_z[k] = 4 * pow(z[k], 3);
+    if (l_zz != NULL) l_zz[k] = 12 * z[k] * z[k];
+  }
+  return 0;
+}
+
+static const dvi_density_part explosive_part = {.kind = DVI_DENSITY_POTENTIAL,
+                                                .variable = value_and_slope,
+                                                .variables = 1,
+                                                .density = explosive};
+
+START_TEST(a_run_that_fails_ends_where_single_steps_end)
+{
+  density_field field = make("fem:degree=2,cells=2000,lumped=yes", 1, 0, &explosive_part);
+  const size_t bytes = (size_t)field.n * sizeof(double);
+  const dvi_run_options options = {.h = 0x1p-13, .t_end = 1};
+  dvi_integrator *run = NULL, *single = NULL;
+  dvi_run_report report;
+  long steps = 0;
+  for (int64_t i = 0; i < field.n; i++) field.q[i] = 5;
+  ck_assert_int_eq(dvi_integrator_create(field.system, "verlet", &run), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_create(field.system, "verlet", &single), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_start(run, 0, field.q, field.p), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_start(single, 0, field.q, field.p), DVI_OK);
+  const dvi_status status = dvi_run(run, &options, &report);
+  while (dvi_integrator_step(single, options.h) == DVI_OK) steps++;
+  ck_assert_int_ne(status, DVI_OK);
+  ck_assert_int_gt(steps, 33);
+  ck_assert_int_eq(report.steps, steps);
+  ck_assert_double_eq(dvi_integrator_time(run), dvi_integrator_time(single));
+  ck_assert_mem_eq(dvi_integrator_q(run), dvi_integrator_q(single), bytes);
+  ck_assert_mem_eq(dvi_integrator_p(run), dvi_integrator_p(single), bytes);
+  dvi_integrator_destroy(&run);
+  dvi_integrator_destroy(&single);
+  end_density(&field);
+}
+END_TEST
+
 SUITE(density_ranges)
 {
+  tcase_add_test(tests, a_run_that_fails_ends_where_single_steps_end);
   tcase_add_test(tests, circles_have_ranges_of_a_short_reach);
   tcase_add_test(tests, points_that_are_coordinates_give_what_others_give);
   tcase_add_test(tests, repeated_rows_have_the_bits_of_entries);

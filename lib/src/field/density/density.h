@@ -38,8 +38,9 @@ typedef struct dvi__slots {
   int *qq, *qv, *vv;
 } dvi__slots;
 
-/* Points that are coordinates, in a part whose points have one at most. From `first` on the only variable at point k is coordinate k - shift.
- * `weight` is that of all these points, or 0 if they differ. */
+/* Points that are coordinates, in a part whose points have one at most. From `first` on the only
+ * variable at point k is coordinate k - shift. `weight` is that of all these points, or 0 if they
+ * differ. */
 typedef struct dvi__own_points {
   int64_t first, shift;
   double weight;

@@ -80,7 +80,7 @@ static int64_t merge_rows(const dvi_density *density, const dvi__density_part *p
   return count;
 }
 
-/* Let the part have these points. `weight` [points] is taken. */
+/* Let the part have these points, with copies of their weights. */
 static dvi_status take_points(const dvi_density *density, dvi__density_part *part,
                               const int64_t *row, int64_t count, const double *weight)
 {
@@ -98,25 +98,22 @@ static dvi_status take_points(const dvi_density *density, dvi__density_part *par
   return DVI_OK;
 }
 
-static dvi_status order(const dvi_density *density, dvi__density_part *part, int64_t **row)
+/* Sort and merge. `row` [points] gets the rows, and `differs` tells if they are not 0, 1, 2, .. */
+static dvi_status sort_and_merge(const dvi_density *density, dvi__density_part *part, int64_t *row,
+                                 int *differs)
 {
   const int64_t points = part->points;
   int *first = DVI_NEW(int, points);
   int64_t *start = DVI_NEW(int64_t, density->unknowns + 2);
   double *weight = DVI_NEW(double, points);
-  *row = DVI_NEW(int64_t, points);
-  dvi_status status = first && start && weight && *row
-                          ? DVI_OK
-                          : dvi__fail(DVI_NO_MEMORY, "density: no memory for points");
-  if (status == DVI_OK) {
-    sort_rows(density, part, first, start, *row);
-    const int64_t count = merge_rows(density, part, *row, weight);
-    if (count < points || !is_sorted(points, *row)) {
-      status = take_points(density, part, *row, count, weight);
-    } else {
-      dvi__release(*row);
-      *row = NULL;
-    }
+  dvi_status status = DVI_OK;
+  if (first == NULL || start == NULL || weight == NULL) {
+    status = dvi__fail(DVI_NO_MEMORY, "density: no memory for points");
+  } else {
+    sort_rows(density, part, first, start, row);
+    const int64_t count = merge_rows(density, part, row, weight);
+    *differs = count < points || !is_sorted(points, row);
+    if (*differs) status = take_points(density, part, row, count, weight);
   }
   dvi__release(first);
   dvi__release(start);
@@ -133,5 +130,13 @@ dvi_status dvi__density_order_points(const dvi_density *density, dvi__density_pa
   part->own = NULL;
   part->points = dvi_space_points(density->space, &part->x, &part->weight);
   if (!dvi__density_is_circle(density) && !is_pointwise(density, part)) return DVI_OK;
-  return order(density, part, row);
+  int64_t *made = DVI_NEW(int64_t, part->points);
+  if (made == NULL) return dvi__fail(DVI_NO_MEMORY, "density: no memory for points");
+  int differs = 0;
+  const dvi_status status = sort_and_merge(density, part, made, &differs);
+  if (differs)
+    *row = made;
+  else
+    dvi__release(made);
+  return status;
 }

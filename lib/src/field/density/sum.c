@@ -241,7 +241,7 @@ static int sum_block(block *b, const dvi__density_sums *s)
 int dvi__part_sum(const dvi__integral *integral, const dvi__density_part *part,
                   const dvi__density_point *at, const double *room, const dvi__density_sums *sums)
 {
-  double stack[ROOM], weight[DVI__BLOCK_MOST];
+  double stack[ROOM], weight[DVI__BLOCK_MOST]; /* written before they are read */
   block b = {.integral = integral, .part = part, .at = at, .weight = weight, .room = stack};
   if (room != NULL) {
     b.G = room;

@@ -42,7 +42,7 @@ static int has_variable(const dvi_moving *m, int component, int rate)
 {
   for (int j = 0; j < m->part.variables; j++) {
     const dvi_jet *z = &m->part.variable[j];
-    if (z->component == component && z->order[0] == 0 && !z->rate == !rate) return 1;
+    if (z->component == component && z->order[0] + z->order[1] == 0 && !z->rate == !rate) return 1;
   }
   return 0;
 }
@@ -50,9 +50,10 @@ static int has_variable(const dvi_moving *m, int component, int rate)
 /* Tell if a translation of one number of all nodes leaves the Lagrangian as it is. */
 static int is_symmetry(const dvi_moving *m, int number)
 {
-  if (number == 0) return m->periodic && m->translations && dvi__moving_is_free(m);
-  const int fixed = !m->periodic && (m->fixed[0] || m->fixed[1]);
-  return !fixed && m->mean.mean == NULL && !has_variable(m, number - 1, 0);
+  for (int k = 0; k < m->nodes; k++)
+    if (m->unknown[k * m->numbers + number] < 0) return 0;
+  if (number < m->dimension) return m->translations;
+  return m->mean.mean == NULL && !has_variable(m, number - m->dimension, 0);
 }
 
 static int find_symmetries(dvi_moving *m, dvi_symmetry *symmetry)
@@ -62,10 +63,11 @@ static int find_symmetries(dvi_moving *m, dvi_symmetry *symmetry)
     dvi__number_translation *of = &m->translation[count];
     if (!is_symmetry(m, k)) continue;
     *of = (dvi__number_translation){.moving = m, .number = k};
-    if (k > 0 && m->components > 1)
-      (void)snprintf(of->name, sizeof of->name, "momentum_u%d", k);
+    const int component = k - m->dimension;
+    if (component >= 0 && m->components > 1)
+      (void)snprintf(of->name, sizeof of->name, "momentum_u%d", component + 1);
     else
-      (void)snprintf(of->name, sizeof of->name, "momentum_%s", k > 0 ? "u" : "x");
+      (void)snprintf(of->name, sizeof of->name, "momentum_%c", component >= 0 ? 'u' : "xy"[k]);
     symmetry[count++] = (dvi_symmetry){.name = of->name, .generator = translate, .user = of};
   }
   return count;
