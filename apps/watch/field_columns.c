@@ -22,7 +22,7 @@ static bool has_state(const field_columns *c)
 static bool is_among(const field_columns *c, int first, const char *name)
 {
   for (int i = 0; i < first; i++)
-    if (strcmp(c->all[i].name, name) == 0) return true;
+    if (c->all[i].name != NULL && strcmp(c->all[i].name, name) == 0) return true;
   return false;
 }
 
