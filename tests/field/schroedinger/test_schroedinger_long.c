@@ -36,8 +36,17 @@ START_TEST(phases_keep_the_norm_to_roundoff)
 }
 END_TEST
 
+/* What an iteration has not reached when it stops would add up. */
+START_TEST(iterations_keep_the_norm_to_roundoff)
+{
+  ck_assert(drift("fourier:modes=10,points=21", 1, "midpoint") < 5e-13);
+  ck_assert(drift("fourier:modes=10,points=21", 1, "gauss:stages=2") < 5e-13);
+}
+END_TEST
+
 SUITE(schroedinger_long)
 {
   tcase_add_test(tests, elements_keep_the_norm_to_roundoff);
   tcase_add_test(tests, phases_keep_the_norm_to_roundoff);
+  tcase_add_test(tests, iterations_keep_the_norm_to_roundoff);
 }
