@@ -61,7 +61,7 @@ BEGIN {
   sees["field/density"] = "core num field/algebra field/mesh field/space"
   sees["field/schroedinger"] = "core num march field/algebra field/space field/density"
   sees["field/multisymplectic"] = "core num march field/algebra"
-  sees["field/moving"] = "core num"
+  sees["field/moving"] = "core num field/mesh field/space"
   sees["field/rotations"] = "core field/algebra"
   # The library of scenes includes libdvi's public headers, too.
   sees["text"] = ""

@@ -1,15 +1,21 @@
-/** Fields of one dimension on a mesh whose nodes move.
+/** Fields of one or two dimensions on a mesh whose nodes move.
  *
- *  A field u(t,x) of some components is linear in each cell, between values u_a at nodes x_a. The
- *  nodes may be coordinates beside the values, so that the mesh follows from the action, too, and
- *  translations in space are a symmetry of it. With a density l per length the Lagrangian is
+ *  A field u(t,x) of some components is linear in each cell, between values u_a at nodes x_a. Cells
+ *  are parts of an interval, or triangles. The nodes may be coordinates beside the values, so that
+ *  the mesh follows from the action, too, and translations in space are a symmetry of it. With a
+ *  density l per length or area the Lagrangian is
  *
- *      L = sum over cells of int l(t, x, u, u_t, u_x) dx
- *          + mu/2 sum x_a'^2 - kappa sum (h_e - H_e)^2 / h_e - eps^2/2 int u_xx^2 dx
+ *      L = sum over cells of int l(t, x, u, u_t, grad u) dx
+ *          + mu/2 sum |x_a'|^2 - kappa sum V_e B(F_e) - eps^2/2 int u_xx^2 dx
  *
- *  where h_e are the lengths of the cells, H_e those of reference, u_x = Du/h_e, and
- *  u_t = u' - u_x x' with u' and x' along a node's path. mu is a mass of the nodes, and kappa keeps
- *  them apart (Leok 2004, sec. 5.6; docs/fields/moving.md). */
+ *  where u_t = u' - grad u . x' with u' and x' along a node's path. mu is a mass of the nodes. F_e
+ *  maps a cell of reference, of volume V_e, to what it is now. With J = det F the barrier
+ *
+ *      B = (J - 1)^2 / J,    and for triangles    B = (J - 1)^2 / J + |F|^2 / (2 J) - 1,
+ *
+ *  keeps volumes, and the shapes of triangles, near those of reference, and nodes apart. In one
+ *  dimension V B = (h - H)^2/h with the length h and that of reference H (Leok 2004, sec. 5.6;
+ *  docs/fields/moving.md). eps is for one dimension alone. */
 #ifndef DVI_MOVING_H
 #define DVI_MOVING_H
 #include <dvi/density.h>
@@ -18,15 +24,17 @@
 typedef struct dvi_moving dvi_moving;
 
 enum {
+  DVI_MOVING_AXES_MAX = 2,       /**< dimensions */
   DVI_MOVING_COMPONENTS_MAX = 4, /**< components of a field */
   DVI_MOVING_POINTS_MAX = 16     /**< quadrature points a cell */
 };
 
 /** How the nodes move. */
 typedef enum dvi_moving_motion {
-  DVI_MOVING_FREE,       /**< by the action. End nodes rest, or with periodic ends move, too */
+  DVI_MOVING_FREE,       /**< by the action. Nodes of a boundary rest, unless they slide */
   DVI_MOVING_PRESCRIBED, /**< by a path, or not at all without one */
-  /** by constraints, all arcs sqrt(h^2 + (stretch Du)^2) of one length. From 3 cells on */
+  /** by constraints, all arcs sqrt(h^2 + (stretch Du)^2) of one length. On an axis of 3 cells or
+   *  more */
   DVI_MOVING_EQUAL
 } dvi_moving_motion;
 
@@ -36,8 +44,8 @@ typedef struct dvi_moving_end {
   const double *value; /**< [components] of fixed ends, copied. Default: 0 */
 } dvi_moving_end;
 
-/** A function of u alone that is added to the density, by its mean over a cell. It makes that
- *  part's integral exact. -V(u) = cos u - 1 has the mean cos(a) sinc(d/2) - 1 between values with
+/** A function of u alone that is added to the density, by its mean over a cell of an axis. It makes
+ *  that part's integral exact. -V(u) = cos u - 1 has the mean cos(a) sinc(d/2) - 1 between values with
  *  middle a and difference d. */
 typedef struct dvi_moving_mean {
   /** The mean over the straight line from `left` to `right` [components*count], its first
@@ -49,25 +57,32 @@ typedef struct dvi_moving_mean {
   void *user;
 } dvi_moving_mean;
 
-/** A field on a moving mesh. Zero means the default. */
+/** A field on a moving mesh. Zero means the default. Numbers of points are axis by axis, such as
+ *  x [dimension*count]. */
 typedef struct dvi_moving_terms {
-  size_t size;    /**< sizeof(dvi_moving_terms) */
-  dvi_axis axis;  /**< its nodes, if it has any, are those of reference. Without a kind */
-  int cells;      /**< at least 2. 0 with the axis's nodes, which determine it */
+  size_t size;   /**< sizeof(dvi_moving_terms) */
+  dvi_axis axis; /**< its nodes, if it has any, are those of reference. Without a kind */
+  int cells;     /**< of the axis, at least 2. 0 with the axis's nodes, which determine it */
+  /** Triangles of reference in a plane, shared, instead of an axis. Their period, if any, is that of
+   *  the field. With it there are no mean, monitor, ends, viscosity, and dispersion */
+  const dvi_mesh *mesh;
   int components; /**< 1 to DVI_MOVING_COMPONENTS_MAX. Default: 1 */
-  /** The density, with variables u, u_t and u_x of the components. Its kind and its derivative in
-   *  time are not read. Required */
+  /** The density, with variables u, u_t, u_x, and u_y of the components. Its kind and its derivative
+   *  in time are not read. Required */
   const dvi_density_part *part;
   const dvi_moving_mean *mean; /**< a part of the density that is integrated exactly */
   int translations;            /**< not 0 if l does not depend on x */
-  /** l_x [count], l_xz [variables*count] and l_xx [count] at fixed z. Each may be NULL. Required
-   *  for nodes that are unknowns, unless l does not depend on x */
+  /** l_x [dimension*count], l_xz [dimension*variables*count] and the lower triangle of l_xx, row by
+   *  row, at fixed z. Each may be NULL. Required for nodes that are unknowns, unless l does not
+   *  depend on x */
   int (*space_derivative)(int count, double t, const double *x, const double *z, double *l_x,
                           double *l_xz, double *l_xx, void *user);
-  int points; /**< Gauss points a cell, 1 to DVI_MOVING_POINTS_MAX. Default: 3 */
+  /** Gauss points a cell, 1 to DVI_MOVING_POINTS_MAX. In triangles 1, 3 or 6, exact for degrees 1,
+   *  2 and 4. Default: 3 */
+  int points;
   dvi_moving_motion motion;
-  /** The path x [count] of nodes with reference positions X, and its rate x'. At t = 0 it need not
-   *  be X. Periodic paths move the end as the start. Default: nodes rest */
+  /** The path x of nodes with reference positions X, and its rate x'. At t = 0 it need not be X.
+   *  Periodic paths move the end as the start. Default: nodes rest */
   int (*path)(int count, double t, const double *X, double *x, double *rate, void *user);
   /** Nodes move straight from the path's positions at multiples of this time to the next ones. A
    *  method that takes u straight over a step, midpoint, then keeps fields u = b t + c x exactly,
@@ -75,12 +90,20 @@ typedef struct dvi_moving_terms {
   double path_step;
   double stretch; /**< of DVI_MOVING_EQUAL, at least 0 */
   double mu;      /**< mass of a node, at least 0. Needed where u is straight */
-  double kappa;   /**< stiffness of the cells' lengths, at least 0 */
+  double kappa;   /**< stiffness of the cells, at least 0 */
   /** A monitor m(x) > 0 [count], whose integral is the same in all cells of reference. Default:
    *  equal cells */
   int (*monitor)(int64_t count, const double *x, double *m, void *user);
   dvi_moving_end left, right; /**< without periodic ends */
-  const double *jump;         /**< [components] u(to) - u(from) of periodic ends. Default: 0 */
+  /** [dimension*components] change of u over a period, axis by axis. Default: 0 */
+  const double *jump;
+  /** [conditions] values on parts of a mesh, at time 0 and the places of reference. Without robin,
+   *  fluxes, and rates. Default: all free */
+  const dvi_density_condition *condition;
+  int conditions;
+  /** not 0 if free nodes of a mesh's boundary move along edges that are parallel to an axis, and
+   *  have no other. Fixed values move with them */
+  int slide;
   /** nu >= 0 of a force nu u_txx, which is -dR/dv with R = nu/2 int u_tx^2 */
   double viscosity;
   double dispersion; /**< eps >= 0 of a density -eps^2 u_xx^2/2 */
@@ -95,9 +118,10 @@ typedef struct dvi_moving_report {
   double barrier;  /**< kappa's part of the energy */
 } dvi_moving_report;
 
-/** A field at points x [count], by which motion starts: u, u_x and u_t [components*count], and the
- *  velocity of the nodes [count], which is read only if nodes are unknowns. All are 0 before the
- *  call. Returns 0, or another number for a failure. */
+/** A field at points x [dimension*count], axis by axis, by which motion starts: u and u_t
+ *  [components*count], the gradients u_x [components*dimension*count] component by component and
+ *  axis by axis, and the velocity of the nodes [dimension*count], which is read only if nodes are
+ *  unknowns. All are 0 before the call. Returns 0, or another number for a failure. */
 typedef int dvi_moving_wave(int64_t count, const double *x, double *u, double *u_x, double *u_t,
                             double *velocity, void *user);
 
@@ -108,10 +132,11 @@ extern "C" {
 /** Create a field on a moving mesh.
  *
  *  @retval DVI_BAD_SIZE         the number of cells, components or points is out of its range
- *  @retval DVI_BAD_ARGUMENT     the axis, a node, an end, a variable of the density, a mass, a
- *                               stiffness or another argument is not as described
- *  @retval DVI_CALLBACK_FAILED  the monitor failed
- *  @retval DVI_NOT_FINITE       the monitor is not positive and finite
+ *  @retval DVI_BAD_ARGUMENT     the axis, the mesh, a node, an end, a condition, a variable of the
+ *                               density, a mass, a stiffness or another argument is not as described
+ *  @retval DVI_UNSUPPORTED      the mesh has other cells than triangles in a plane
+ *  @retval DVI_CALLBACK_FAILED  the monitor or a datum failed
+ *  @retval DVI_NOT_FINITE       the monitor is not positive and finite, or a datum is not finite
  *  @retval DVI_NO_MEMORY        there is no memory */
 dvi_status dvi_moving_create(const dvi_moving_terms *terms, dvi_moving **moving);
 
@@ -119,24 +144,32 @@ dvi_status dvi_moving_create(const dvi_moving_terms *terms, dvi_moving **moving)
  *  before. */
 void dvi_moving_destroy(dvi_moving **moving);
 
-/** Return the reference positions of the nodes, one more than cells, owned by the field, and the
- *  number of cells. `cells` may be NULL. NULL and 0 for NULL. */
+/** Return the reference positions of the nodes, owned by the field, and the number of cells. On an
+ *  axis these are one more than cells. On a mesh they are its vertices, the positions axis by axis.
+ *  `cells` may be NULL. NULL and 0 for NULL. */
 const double *dvi_moving_nodes(const dvi_moving *moving, int *cells);
 
 /** Create the mechanical system of the field, a general Lagrangian. Its coordinates are, node by
- *  node, the position if it is an unknown, and the components that the ends leave free. Periodic
- *  ends have the last node in common with the first one.
+ *  node, the coordinates of its position that are unknowns, and the components that the boundary
+ *  leaves free. Periodic ends have the last node in common with the first one.
  *
- *  Symmetries are "momentum_x", the translation of all nodes with their values, and "momentum_u" or
- *  "momentum_u1" and so on, if the density allows them and no end is fixed. A mesh on which a cell
- *  has no length makes the step fail wherever the method evaluates L, and dvi_last_error() names
- *  the cell then. The method midpoint does so in the middle of steps alone: if nodes have passed
- *  each other at the end of a step, the next step fails, and what is evaluated there.
+ *  Symmetries are "momentum_x" and "momentum_y", translations of all nodes with their values, and
+ *  "momentum_u" or "momentum_u1" and so on, if the density allows them and all nodes have the
+ *  unknown. A mesh on which a cell has no volume makes the step fail wherever the method evaluates
+ *  L, and dvi_last_error() names the cell then. The method midpoint does so in the middle of steps
+ *  alone: if nodes have passed each other at the end of a step, the next step fails, and what is
+ *  evaluated there.
  *
  *  @param[out] system  owned by the caller, for dvi_system_destroy before the field's end
  *  @retval DVI_SINGULAR  a component has no rate in the density
  *  @retval (others)      as dvi_system_create */
 dvi_status dvi_moving_system(dvi_moving *moving, dvi_system **system);
+
+/** Give the terms from which dvi_moving_system makes a system, to add others to them. Their arrays
+ *  are the field's.
+ *
+ *  @retval DVI_SINGULAR  a component has no rate in the density */
+dvi_status dvi_moving_system_terms(dvi_moving *moving, dvi_system_terms *terms);
 
 /** Give coordinates q, velocities v, and momenta p at time 0 of a wave on the mesh of reference.
  *  Each of q, v and p may be NULL. With DVI_MOVING_EQUAL nodes go from there to arcs of one length,
@@ -144,36 +177,38 @@ dvi_status dvi_moving_system(dvi_moving *moving, dvi_system **system);
  *
  *  @retval DVI_CALLBACK_FAILED  the wave failed
  *  @retval DVI_NOT_FINITE       the wave is not finite. dvi_last_error() names the node
- *  @retval DVI_SINGULAR         without mu, u is straight at a node
+ *  @retval DVI_SINGULAR         without mu, u is straight at a node, or nodes of a mesh are free, and
+ *                               v or p is wanted
  *  @retval DVI_NOT_CONVERGED    no arcs of one length were found
  *  @retval DVI_NO_MEMORY        there is no memory
  *  @retval (others)             as the callbacks fail */
 dvi_status dvi_moving_start(const dvi_moving *moving, dvi_moving_wave *wave, void *user, double *q,
                             double *v, double *p);
 
-/** Give coordinates q, velocities v, and momenta p at time t of positions x [cells+1], values u
- *  [components*(cells+1)] component by component, and their rates along the paths of the nodes,
- *  x_rate and u_rate, which are 0 if NULL. Numbers that are no unknowns are not read. Each of q, v
- *  and p may be NULL.
+/** Give coordinates q, velocities v, and momenta p at time t of positions x [dimension*nodes] axis
+ *  by axis, values u [components*nodes] component by component, and their rates along the paths of
+ *  the nodes, x_rate and u_rate, which are 0 if NULL. Nodes are those of dvi_moving_nodes. Numbers
+ *  that are no unknowns are not read. Each of q, v and p may be NULL.
  *
- *  @retval DVI_BAD_ARGUMENT  a cell has no length. dvi_last_error() names it
+ *  @retval DVI_BAD_ARGUMENT  a cell has no volume. dvi_last_error() names it
  *  @retval (others)          as dvi_moving_start */
 dvi_status dvi_moving_project(const dvi_moving *moving, double t, const double *x, const double *u,
                               const double *x_rate, const double *u_rate, double *q, double *v,
                               double *p);
 
-/** Give positions x [cells+1] and values u [components*(cells+1)] of coordinates q at time t.
+/** Give positions x [dimension*nodes] and values u [components*nodes] of coordinates q at time t.
  *  Either may be NULL.
  *
  *  @retval (others)  as the path fails */
 dvi_status dvi_moving_lift(const dvi_moving *moving, double t, const double *q, double *x,
                            double *u);
 
-/** Evaluate u [components*count], or u_x, at points of coordinates q and time t. Periodic fields
- *  repeat themselves with their jump.
+/** Evaluate u [components*count], or its derivatives along an axis, at points x [dimension*count] of
+ *  coordinates q and time t. Periodic fields repeat themselves with their jump.
  *
- *  @param slope  not 0 for u_x
- *  @retval DVI_BAD_ARGUMENT  a point lies outside, or a cell has no length
+ *  @param slope  1 for u_x, 2 for u_y, 0 for u
+ *  @retval DVI_BAD_ARGUMENT  a point lies outside, a cell has no volume, or an edge of a periodic
+ *                            mesh has grown to half a period
  *  @retval DVI_NO_MEMORY     there is no memory
  *  @retval (others)          as the path fails */
 dvi_status dvi_moving_evaluate(const dvi_moving *moving, double t, const double *q, int slope,

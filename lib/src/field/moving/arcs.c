@@ -25,7 +25,8 @@ static double scale(const dvi_moving *m, int number)
 static int measure(const dvi_moving *m, const double *q, int cell, arc *l)
 {
   double y[4 * DVI__NODE_NUMBERS], sum = 0;
-  const int returned = dvi__moving_gather(m, &(dvi__moving_state){.q = q}, cell, 2, y);
+  const int returned = dvi__moving_gather(m, &(dvi__moving_state){.q = q},
+                                          m->cell.corner + 2 * cell, 2, y);
   if (returned != 0) return returned;
   for (int k = 0; k < m->numbers; k++) {
     l->by[k] = scale(m, k) * (y[m->numbers + k] - y[k]);

@@ -66,7 +66,7 @@ int dvi__moving_add_bends(const dvi_moving *m, const dvi__moving_state *state,
   for (int k = 0; k < m->bend.count; k++) {
     dvi__stencil s;
     dvi__stencil_clear(m, AROUND, &s);
-    const int returned = dvi__moving_gather(m, state, m->bend.first + k, AROUND, s.y);
+    const int returned = dvi__moving_gather(m, state, m->bend.corner + AROUND * k, AROUND, s.y);
     if (returned != 0) return returned;
     for (int c = 0; c < m->components; c++) add_bend(m, c, &s);
     dvi__stencil_scatter(m, &m->bend, k, &s, sums);

@@ -1,21 +1,22 @@
-/* Cells with linear fields. Between nodes (x_0,u_0) and (x_1,u_1), with h = x_1 - x_0, s = Du/h and
- * a = 0..1 along the cell,
+/* Cells with linear fields. In a cell of the volume V with barycentric coordinates L_a, and the
+ * gradient s = sum_a u_a grad L_a,
  *
- *     L_e = h sum_k w_k l(t, x, u, u_t, u_x) + h m(u_0,u_1) - kappa (h - H)^2/h + mu/2 x_0'^2,
- *     u = (1-a) u_0 + a u_1,    u_x = s,    u_t = (1-a) u_0' + a u_1' - s ((1-a) x_0' + a x_1').
+ *     L_e = V (sum_k w_k l(t, x, u, u_t, s) + m(u_0,u_1)) - kappa V_0 B,
+ *     u = sum_a L_a u_a,    u_t = sum_a L_a (u_a' - s . x_a').
  *
  * This is the density in coordinates of the mesh, L(phi, q, Dq (D phi)^-1) det D phi, with the map
- * phi from cells of one length to those at x. Source: Leok 2004, sec. 5.6, whose formula has
+ * phi from cells that rest to those at x. Source: Leok 2004, sec. 5.6, whose formula has
  * L(j1 q) |D phi|, but the derivatives of q must be those by x. */
 #include <string.h>
 
 #include "field/moving/moving.h"
 
 enum {
-  LANES = 64,  /* points of a call of the density */
-  ENDS = 2,    /* nodes of a cell */
-  ENTRIES = 8, /* numbers on which a variable depends */
-  CELL_NUMBERS = 2 * ENDS * DVI__NODE_NUMBERS
+  LANES = 64, /* points of a call of the density */
+  AXES = DVI_MOVING_AXES_MAX,
+  ENTRIES = 2 * DVI__CELL_NODES * (AXES + 1), /* numbers on which a variable depends */
+  CELL_NUMBERS = 2 * DVI__CELL_NODES * DVI__NODE_NUMBERS,
+  POSITION_PAIRS = AXES * (AXES + 1) / 2
 };
 
 /* A variable of the density, with its derivatives by some numbers of the cell. */
@@ -24,16 +25,23 @@ typedef struct slope {
   int count, at[ENTRIES];
 } slope;
 
+/* A cell, its numbers and rates. */
+typedef struct element {
+  const dvi_moving *m;
+  int nodes, rates; /* place of the rates */
+  double y[CELL_NUMBERS];
+  dvi__simplex simplex;
+} element;
+
 /* The density at the points of some cells, each array variable by variable. */
 typedef struct lanes {
   int cells, count;
-  double y[LANES][CELL_NUMBERS];
-  double x[LANES], z[DVI__MOVING_VARIABLES * LANES];
+  element cell[LANES];
+  double x[AXES * LANES], z[DVI__MOVING_VARIABLES * LANES];
   double l[LANES], l_z[DVI__MOVING_VARIABLES * LANES], l_zz[DVI__MOVING_PAIRS * LANES];
-  double l_x[LANES], l_xz[DVI__MOVING_VARIABLES * LANES], l_xx[LANES];
+  double l_x[AXES * LANES], l_xz[AXES * DVI__MOVING_VARIABLES * LANES],
+      l_xx[POSITION_PAIRS * LANES];
 } lanes;
-
-static const double sign[ENDS] = {-1, 1};
 
 static void depend(slope *z, int at, double by)
 {
@@ -41,62 +49,100 @@ static void depend(slope *z, int at, double by)
   z->by[z->count++] = by;
 }
 
-static double length_of(const dvi_moving *m, const double *y)
+/* Give the place of coordinate i of node a, and that of a component. */
+static int position_at(const element *e, int a, int i)
 {
-  return y[m->numbers] - y[0];
+  return a * e->m->numbers + i;
 }
 
-static double slope_of(const dvi_moving *m, const double *y, int component)
+static int value_at(const element *e, int a, int component)
 {
-  const double *u = y + 1 + component;
-  return (u[m->numbers] - u[0]) / length_of(m, y);
+  return a * e->m->numbers + e->m->dimension + component;
+}
+
+/* Give the gradient of a component. */
+static void find_gradient(const element *e, int component, double *s)
+{
+  const double *u = e->y + value_at(e, 0, component);
+  for (int i = 0; i < e->m->dimension; i++) {
+    s[i] = 0;
+    for (int a = 1; a < e->nodes; a++)
+      s[i] += e->simplex.gradient[a][i] * (u[a * e->m->numbers] - u[0]);
+  }
+}
+
+static double dot(const element *e, const double *a, const double *b)
+{
+  double sum = 0;
+  for (int i = 0; i < e->m->dimension; i++) sum += a[i] * b[i];
+  return sum;
 }
 
 /* ---- variables ---- */
 
-static void add_slope(const dvi_moving *m, const double *y, int component, double factor, slope *z)
+/* Add the derivative of a component along a vector. */
+static void add_slope(const element *e, int component, const double *along, slope *z)
 {
-  const double h = length_of(m, y), s = slope_of(m, y, component);
-  z->value += factor * s;
-  for (int a = 0; a < ENDS; a++) {
-    depend(z, a * m->numbers, -factor * sign[a] * s / h);
-    depend(z, a * m->numbers + 1 + component, factor * sign[a] / h);
+  double s[AXES];
+  find_gradient(e, component, s);
+  z->value += dot(e, along, s);
+  for (int a = 0; a < e->nodes; a++) {
+    const double by = dot(e, along, e->simplex.gradient[a]);
+    for (int i = 0; i < e->m->dimension; i++) depend(z, position_at(e, a, i), -by * s[i]);
+    depend(z, value_at(e, a, component), by);
   }
 }
 
-/* Give number k of a node, or its rate with from = half, at a point of the cell. */
-static double between(const dvi_moving *m, const double *y, double a, int k)
+/* Give a number of node 0, or its rate, at a point of the cell. */
+static double between(const element *e, const double *place, int number)
 {
-  return (1 - a) * y[k] + a * y[m->numbers + k];
+  double sum = 0;
+  for (int a = 0; a < e->nodes; a++) sum += place[a] * e->y[a * e->m->numbers + number];
+  return sum;
 }
 
-static slope find_position(const dvi_moving *m, const double *y, double a, int k)
+static slope find_number(const element *e, const double *place, int number)
 {
-  slope z = {.value = between(m, y, a, k)};
-  depend(&z, k, 1 - a);
-  depend(&z, m->numbers + k, a);
+  slope z = {.value = between(e, place, number)};
+  for (int a = 0; a < e->nodes; a++) depend(&z, a * e->m->numbers + number, place[a]);
   return z;
 }
 
-static slope find_rate(const dvi_moving *m, const double *y, double a, int component)
+/* Give the negative velocity of the mesh at a point. */
+static void find_wind(const element *e, const double *place, double *wind)
 {
-  const double *rate = y + ENDS * m->numbers;
-  const double s = slope_of(m, y, component), share[ENDS] = {1 - a, a};
-  slope z = {.value = between(m, rate, a, 1 + component)};
-  add_slope(m, y, component, -between(m, rate, a, 0), &z);
-  for (int b = 0; b < ENDS; b++) {
-    depend(&z, (ENDS + b) * m->numbers, -share[b] * s);
-    depend(&z, (ENDS + b) * m->numbers + 1 + component, share[b]);
+  for (int i = 0; i < e->m->dimension; i++) wind[i] = -between(e, place, e->rates + i);
+}
+
+static slope find_rate(const element *e, const double *place, int component)
+{
+  double wind[AXES], s[AXES];
+  slope z = {.value = between(e, place, e->rates + value_at(e, 0, component))};
+  find_wind(e, place, wind);
+  find_gradient(e, component, s);
+  add_slope(e, component, wind, &z);
+  for (int a = 0; a < e->nodes; a++) {
+    for (int i = 0; i < e->m->dimension; i++)
+      depend(&z, e->rates + position_at(e, a, i), -place[a] * s[i]);
+    depend(&z, e->rates + value_at(e, a, component), place[a]);
   }
   return z;
 }
 
-static slope find_variable(const dvi_moving *m, const double *y, double a, const dvi_jet *jet)
+/* Tell along which axis a variable is a derivative, or -1. */
+static int axis_of(const dvi_jet *jet)
+{
+  return jet->order[0] > 0 ? 0 : jet->order[1] > 0 ? 1 : -1;
+}
+
+static const double unit[AXES][AXES] = {{1, 0}, {0, 1}};
+
+static slope find_variable(const element *e, const double *place, const dvi_jet *jet)
 {
   slope z = {0};
-  if (jet->rate) return find_rate(m, y, a, jet->component);
-  if (jet->order[0] == 0) return find_position(m, y, a, 1 + jet->component);
-  add_slope(m, y, jet->component, 1, &z);
+  if (jet->rate) return find_rate(e, place, jet->component);
+  if (axis_of(jet) < 0) return find_number(e, place, value_at(e, 0, jet->component));
+  add_slope(e, jet->component, unit[axis_of(jet)], &z);
   return z;
 }
 
@@ -108,33 +154,46 @@ static void add_pair(dvi__stencil *s, int i, int j, double value)
   s->second[j * s->size + i] += value;
 }
 
-/* Add factor times the second derivatives of s = Du/h. */
-static void bend_slope(const dvi_moving *m, int component, double factor, dvi__stencil *s)
+/* Add those of the derivative along a vector, with b = along . grad L,
+ *
+ *     d2/dX_ai dX_cj = b_c g_aj s_i + b_a g_ci s_j,    d2/dX_ai du_c = -b_a g_ci,
+ *
+ * where s is the gradient of the component. */
+static void bend_slope(const element *e, int component, const double *along, dvi__stencil *s)
 {
-  const double h = length_of(m, s->y), Du_by_h = slope_of(m, s->y, component);
-  for (int a = 0; a < ENDS; a++)
-    for (int b = 0; b < ENDS; b++) {
-      const double by = factor * sign[a] * sign[b] / (h * h);
-      const int x = a * m->numbers, u = b * m->numbers + 1 + component;
-      s->second[x * s->size + b * m->numbers] += 2 * Du_by_h * by;
-      add_pair(s, x, u, -by);
+  double slope_by[AXES];
+  find_gradient(e, component, slope_by);
+  for (int a = 0; a < e->nodes; a++)
+    for (int c = 0; c < e->nodes; c++) {
+      const double *of_a = e->simplex.gradient[a], *of_c = e->simplex.gradient[c];
+      const double by_a = dot(e, along, of_a), by_c = dot(e, along, of_c);
+      for (int i = 0; i < e->m->dimension; i++) {
+        add_pair(s, position_at(e, a, i), value_at(e, c, component), -by_a * of_c[i]);
+        for (int j = 0; j < e->m->dimension; j++)
+          s->second[position_at(e, a, i) * s->size + position_at(e, c, j)] +=
+              by_c * of_a[j] * slope_by[i] + by_a * of_c[i] * slope_by[j];
+      }
     }
 }
 
-static void bend_variable(const dvi_moving *m, double a, const dvi_jet *jet, double factor,
+static void bend_variable(const element *e, const double *place, const dvi_jet *jet, double factor,
                           dvi__stencil *s)
 {
-  if (!jet->rate && jet->order[0] == 0) return;
-  if (!jet->rate) {
-    bend_slope(m, jet->component, factor, s);
-    return;
-  }
-  slope of_slope = {0};
-  add_slope(m, s->y, jet->component, -factor, &of_slope);
-  bend_slope(m, jet->component, -factor * between(m, s->y + s->half, a, 0), s);
-  for (int i = 0; i < of_slope.count; i++) {
-    add_pair(s, of_slope.at[i], s->half, (1 - a) * of_slope.by[i]);
-    add_pair(s, of_slope.at[i], s->half + m->numbers, a * of_slope.by[i]);
+  double along[AXES];
+  if (!jet->rate && axis_of(jet) < 0) return;
+  if (jet->rate)
+    find_wind(e, place, along);
+  else
+    memcpy(along, unit[axis_of(jet)], sizeof along);
+  for (int i = 0; i < e->m->dimension; i++) along[i] *= factor;
+  bend_slope(e, jet->component, along, s);
+  for (int i = 0; i < e->m->dimension && jet->rate; i++) {
+    slope by_axis = {0};
+    add_slope(e, jet->component, unit[i], &by_axis);
+    for (int k = 0; k < by_axis.count; k++)
+      for (int a = 0; a < e->nodes; a++)
+        add_pair(s, by_axis.at[k], e->rates + position_at(e, a, i),
+                 -factor * place[a] * by_axis.by[k]);
   }
 }
 
@@ -144,14 +203,17 @@ static int gather(const dvi_moving *m, const dvi__moving_state *state, int cell,
 {
   w->count = w->cells * m->points;
   for (int c = 0; c < w->cells; c++) {
-    const int returned = dvi__moving_gather(m, state, cell + c, ENDS, w->y[c]);
+    element *e = &w->cell[c];
+    *e = (element){.m = m, .nodes = m->cell.nodes, .rates = m->cell.nodes * m->numbers};
+    const dvi__corner *corner = m->cell.corner + (size_t)(cell + c) * (size_t)e->nodes;
+    const int returned = dvi__moving_gather(m, state, corner, e->nodes, e->y);
     if (returned != 0) return returned;
+    e->simplex = dvi__moving_simplex(m, e->y);
     for (int k = 0; k < m->points; k++) {
       const int lane = c * m->points + k;
-      w->x[lane] = between(m, w->y[c], m->gauss[k], 0);
+      for (int i = 0; i < m->dimension; i++) w->x[i * w->count + lane] = between(e, m->place[k], i);
       for (int j = 0; j < m->part.variables; j++)
-        w->z[j * w->count + lane] =
-            find_variable(m, w->y[c], m->gauss[k], &m->part.variable[j]).value;
+        w->z[j * w->count + lane] = find_variable(e, m->place[k], &m->part.variable[j]).value;
     }
   }
   return 0;
@@ -178,7 +240,7 @@ static void add_product(const slope *a, const slope *b, double factor, dvi__sten
 static void add_both(const slope *a, const slope *b, double factor, dvi__stencil *s)
 {
   add_product(a, b, factor, s);
-  add_product(b, a, factor, s);
+  if (a != b) add_product(b, a, factor, s);
 }
 
 static void add_first(const slope *z, double factor, dvi__stencil *s)
@@ -186,99 +248,98 @@ static void add_first(const slope *z, double factor, dvi__stencil *s)
   for (int i = 0; i < z->count; i++) s->first[z->at[i]] += factor * z->by[i];
 }
 
-/* Add the point of a lane, h w l, to the stencil. z has the variables and then the position. */
-static void add_second_of_point(const dvi_moving *m, const lanes *w, int lane, const slope *z,
+/* Add the second derivatives of V w l at a point, with V held. z has the variables, and then the
+ * coordinates of the point. */
+static void add_second_of_point(const element *e, const lanes *w, int lane, const slope *z,
                                 dvi__stencil *s)
 {
+  const dvi_moving *m = e->m;
   const int k = lane % m->points, n = m->part.variables;
-  const double weight = m->weight[k], volume = weight * length_of(m, s->y);
-  const slope h = {.count = 2, .at = {0, m->numbers}, .by = {-1, 1}};
-  for (int j = 0; j < n; j++) {
-    const double l_z = w->l_z[j * w->count + lane];
-    add_both(&h, z + j, weight * l_z, s);
-    bend_variable(m, m->gauss[k], &m->part.variable[j], volume * l_z, s);
+  const double factor = m->weight[k] * e->simplex.volume;
+  for (int j = 0; j < n; j++)
+    bend_variable(e, m->place[k], &m->part.variable[j], factor * w->l_z[j * w->count + lane], s);
+  for (int p = 0; p < m->part.pairs; p++)
+    add_both(z + m->pair[p][0], z + m->pair[p][1], factor * w->l_zz[p * w->count + lane], s);
+  for (int i = 0, p = 0; i < m->dimension && m->space_derivative != NULL; i++) {
+    for (int j = 0; j <= i; j++, p++)
+      add_both(z + n + i, z + n + j, factor * w->l_xx[p * w->count + lane], s);
+    for (int j = 0; j < n; j++)
+      add_both(z + n + i, z + j, factor * w->l_xz[(i * n + j) * w->count + lane], s);
   }
-  for (int p = 0; p < m->part.pairs; p++) {
-    const slope *a = z + m->pair[p][0], *b = z + m->pair[p][1];
-    const double l_zz = volume * w->l_zz[p * w->count + lane];
-    if (a == b)
-      add_product(a, a, l_zz, s);
-    else
-      add_both(a, b, l_zz, s);
-  }
-  if (m->space_derivative == NULL) return;
-  add_both(&h, z + n, weight * w->l_x[lane], s);
-  add_product(z + n, z + n, volume * w->l_xx[lane], s);
-  for (int j = 0; j < n; j++) add_both(z + n, z + j, volume * w->l_xz[j * w->count + lane], s);
 }
 
-static void add_point(const dvi_moving *m, int order, const lanes *w, int lane, dvi__stencil *s)
+static void add_point(const element *e, int order, const lanes *w, int lane, dvi__stencil *s)
 {
+  const dvi_moving *m = e->m;
   const int k = lane % m->points, n = m->part.variables;
-  const double weight = m->weight[k], volume = weight * length_of(m, s->y);
-  slope z[DVI__MOVING_VARIABLES + 1];
-  s->value += volume * w->l[lane];
+  const double factor = m->weight[k] * e->simplex.volume, *place = m->place[k];
+  slope z[DVI__MOVING_VARIABLES + AXES];
+  s->value += factor * w->l[lane];
   if (order == 0) return;
-  for (int j = 0; j < n; j++) z[j] = find_variable(m, s->y, m->gauss[k], &m->part.variable[j]);
-  z[n] = find_position(m, s->y, m->gauss[k], 0);
-  s->first[0] -= weight * w->l[lane];
-  s->first[m->numbers] += weight * w->l[lane];
-  for (int j = 0; j < n; j++) add_first(z + j, volume * w->l_z[j * w->count + lane], s);
-  if (m->space_derivative != NULL) add_first(z + n, volume * w->l_x[lane], s);
-  if (order > 1) add_second_of_point(m, w, lane, z, s);
+  for (int j = 0; j < n; j++) z[j] = find_variable(e, place, &m->part.variable[j]);
+  for (int i = 0; i < m->dimension; i++) z[n + i] = find_number(e, place, i);
+  for (int j = 0; j < n; j++) add_first(z + j, factor * w->l_z[j * w->count + lane], s);
+  for (int i = 0; i < m->dimension && m->space_derivative != NULL; i++)
+    add_first(z + n + i, factor * w->l_x[i * w->count + lane], s);
+  if (order > 1) add_second_of_point(e, w, lane, z, s);
 }
 
-/* ---- other parts ---- */
-
-/* Add h m(u_0,u_1). */
-static int add_mean(const dvi_moving *m, int order, dvi__stencil *s)
+/* Add V m(u_0,u_1), with V held. */
+static int add_mean(const element *e, int order, dvi__stencil *s)
 {
   enum { BOTH = 2 * DVI_MOVING_COMPONENTS_MAX };
+  const dvi_moving *m = e->m;
   const int n = 2 * m->components;
-  const double h = length_of(m, s->y), *u = s->y + 1;
+  const double V = e->simplex.volume, *left = e->y + value_at(e, 0, 0),
+               *right = e->y + value_at(e, 1, 0);
   double mean, first[BOTH], second[BOTH * (BOTH + 1) / 2];
   int at[BOTH];
-  const int returned = m->mean.mean(1, u, u + m->numbers, &mean, order > 0 ? first : NULL,
+  const int returned = m->mean.mean(1, left, right, &mean, order > 0 ? first : NULL,
                                     order > 1 ? second : NULL, m->mean.user);
   if (returned != 0) return returned;
-  s->value += h * mean;
-  for (int i = 0; i < n; i++) at[i] = i / m->components * m->numbers + 1 + i % m->components;
-  for (int a = 0; a < ENDS && order > 0; a++) s->first[a * m->numbers] += sign[a] * mean;
-  for (int i = 0; i < n && order > 0; i++) s->first[at[i]] += h * first[i];
+  s->value += V * mean;
+  for (int i = 0; i < n; i++) at[i] = value_at(e, i / m->components, i % m->components);
+  for (int i = 0; i < n && order > 0; i++) s->first[at[i]] += V * first[i];
   for (int i = 0, p = 0; i < n && order > 1; i++) {
-    for (int a = 0; a < ENDS; a++) add_pair(s, a * m->numbers, at[i], sign[a] * first[i]);
-    for (int j = 0; j < i; j++, p++) add_pair(s, at[i], at[j], h * second[p]);
-    s->second[at[i] * (s->size + 1)] += h * second[p++];
+    for (int j = 0; j < i; j++, p++) add_pair(s, at[i], at[j], V * second[p]);
+    s->second[at[i] * (s->size + 1)] += V * second[p++];
   }
   return 0;
 }
 
-/* Add mu x_0'^2/2 - kappa (h - H)^2/h. */
-static void add_mesh(const dvi_moving *m, int cell, dvi__stencil *s)
+/* Let the volume of a stencil V M, whose derivatives are those of M times V so far, follow the
+ * nodes. V' = V g and V'' = V (g_ai g_cj - g_aj g_ci). */
+static void release_volume(const element *e, int order, dvi__stencil *s)
 {
-  const double h = length_of(m, s->y), H = m->node[cell + 1] - m->node[cell];
-  const double rate = s->y[s->half], stiff = 2 * m->kappa * H * H / (h * h * h);
-  const double pressure = m->kappa * (1 - H / h) * (1 + H / h);
-  s->value += 0.5 * m->mu * rate * rate - m->kappa * (h - H) * (h - H) / h;
-  s->first[s->half] += m->mu * rate;
-  s->second[s->half * (s->size + 1)] += m->mu;
-  for (int a = 0; a < ENDS; a++) {
-    s->first[a * m->numbers] -= sign[a] * pressure;
-    for (int b = 0; b < ENDS; b++)
-      s->second[a * m->numbers * s->size + b * m->numbers] -= sign[a] * sign[b] * stiff;
+  const int n = e->m->dimension;
+  for (int k = 0; k < e->nodes * n && order > 1; k++) {
+    const int a = k / n, i = k % n, row = position_at(e, a, i);
+    const double *of_a = e->simplex.gradient[a];
+    for (int j = 0; j < s->size; j++) add_pair(s, row, j, of_a[i] * s->first[j]);
+    for (int c = 0; c < e->nodes; c++)
+      for (int j = 0; j < n; j++) {
+        const double *of_c = e->simplex.gradient[c];
+        s->second[row * s->size + position_at(e, c, j)] += s->value *
+                                                           (of_a[i] * of_c[j] - of_a[j] * of_c[i]);
+      }
   }
+  for (int a = 0; a < e->nodes && order > 0; a++)
+    for (int i = 0; i < n; i++)
+      s->first[position_at(e, a, i)] += s->value * e->simplex.gradient[a][i];
 }
 
 static int add_cell(const dvi_moving *m, int order, const lanes *w, int lane, int cell,
                     const dvi__moving_sums *sums)
 {
+  const element *e = &w->cell[lane];
   dvi__stencil s;
-  dvi__stencil_clear(m, ENDS, &s);
-  memcpy(s.y, w->y[lane], (size_t)s.size * sizeof *s.y);
-  for (int k = 0; k < m->points; k++) add_point(m, order, w, lane * m->points + k, &s);
-  const int returned = m->mean.mean != NULL ? add_mean(m, order, &s) : 0;
+  dvi__stencil_clear(m, e->nodes, &s);
+  memcpy(s.y, e->y, (size_t)s.size * sizeof *s.y);
+  for (int k = 0; k < m->points; k++) add_point(e, order, w, lane * m->points + k, &s);
+  const int returned = m->mean.mean != NULL ? add_mean(e, order, &s) : 0;
   if (returned != 0) return returned;
-  if (dvi__moving_is_free(m)) add_mesh(m, cell, &s);
+  release_volume(e, order, &s);
+  if (m->kappa > 0) dvi__moving_add_barrier(m, cell, &e->simplex, &s);
   dvi__stencil_scatter(m, &m->cell, cell, &s, sums);
   return 0;
 }

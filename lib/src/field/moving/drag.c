@@ -84,7 +84,8 @@ static int gather(const dvi_moving *m, const dvi__moving_state *state, int k, dr
   const int first = m->periodic || k > 0 ? 0 : 1;
   const int last = m->periodic || k + 1 < m->cells ? AROUND : AROUND - 1;
   const int read = (last - first) * m->numbers;
-  const int returned = dvi__moving_gather(m, state, k - 1 + first, last - first, y);
+  const int returned = dvi__moving_gather(m, state, m->drag.corner + AROUND * k + first,
+                                          last - first, y);
   memset(d, 0, sizeof *d);
   d->n = AROUND * m->numbers;
   memcpy(d->y + first * m->numbers, y, (size_t)read * sizeof *y);
@@ -112,8 +113,8 @@ int dvi__moving_drag(double t, const double *q, const double *v, double *F, void
     const int returned = evaluate(m, &(dvi__moving_state){t, q, v}, k, &d);
     if (returned != 0) return returned;
     for (int i = 0; i < d.n; i++) {
-      const int node = (k - 1 + i / m->numbers + m->nodes) % m->nodes;
-      const int at = m->unknown[node * m->numbers + i % m->numbers];
+      const int node = m->drag.corner[AROUND * k + i / m->numbers].node;
+      const int at = node < 0 ? -1 : m->unknown[node * m->numbers + i % m->numbers];
       if (at >= 0) F[at] += d.force[i];
     }
   }

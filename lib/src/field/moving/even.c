@@ -88,12 +88,13 @@ static void fix_ends(const dvi_moving *m, dvi__wave_values *w)
   for (int c = 0; c < m->components; c++)
     for (int side = 0; side < 2; side++) {
       const int first = c * (m->cells + 1), at = first + side * m->cells;
+      const int number = (side ? m->nodes - 1 : 0) * m->numbers + 1 + c;
       if (m->periodic) {
         w->u[at] = w->u[first] + side * m->jump[c];
         w->u_x[at] = w->u_x[first];
         w->u_t[at] = w->u_t[first];
-      } else if (m->fixed[side]) {
-        w->u[at] = m->end[side][c];
+      } else if (m->unknown[number] < 0) {
+        w->u[at] = m->known[number];
         w->u_t[at] = 0;
       }
     }

@@ -11,7 +11,7 @@ enum { FINE = 64 }; /* points of the grid a cell */
 static dvi_status monitor(const dvi_moving_terms *terms, const dvi_moving *m, int count, double *x,
                           double *value)
 {
-  for (int i = 0; i < count; i++) x[i] = m->from + m->length * (i + 0.5) / count;
+  for (int i = 0; i < count; i++) x[i] = m->from + m->volume * (i + 0.5) / count;
   const int returned = terms->monitor(count, x, value, terms->user);
   if (returned != 0)
     return dvi__fail(DVI_CALLBACK_FAILED, "moving: the monitor returned %d", returned);
@@ -30,7 +30,7 @@ static void place(dvi_moving *m, int count, const double *value)
   for (int i = 0; i < count; i++) whole += value[i];
   for (int i = 0, k = 1; i < count; i++) {
     for (; k < m->cells && sum + value[i] >= whole * k / m->cells; k++)
-      m->node[k] = m->from + m->length / count * (i + (whole * k / m->cells - sum) / value[i]);
+      m->node[k] = m->from + m->volume / count * (i + (whole * k / m->cells - sum) / value[i]);
     sum += value[i];
   }
 }

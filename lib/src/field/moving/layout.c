@@ -1,5 +1,5 @@
 /* Unknowns, patterns, and the places of stencils in them. */
-#include <limits.h>
+#include <string.h>
 
 #include "core/memory.h"
 #include "core/status.h"
@@ -10,63 +10,84 @@ static dvi_status no_memory(const dvi_moving *m)
   return dvi__fail(DVI_NO_MEMORY, "moving: no memory for %d cells", m->cells);
 }
 
-static int is_unknown(const dvi_moving *m, int node, int number)
-{
-  const int at_end = !m->periodic && (node == 0 || node == m->cells);
-  if (number == 0) return dvi__moving_is_free(m) && !at_end;
-  return !at_end || !m->fixed[node > 0];
-}
+/* ---- patterns ---- */
 
-static dvi_status number_unknowns(dvi_moving *m)
+/* The stencils of each node, number[start[node]] and so on. */
+typedef struct stars {
+  int *start, *number;
+} stars;
+
+/* Corners beyond an end are not counted. */
+static dvi_status find_stars(const dvi_moving *m, const dvi__stencils *s, stars *of)
 {
-  m->unknown = DVI_NEW(int, m->nodes * m->numbers);
-  if (m->unknown == NULL) return no_memory(m);
-  for (int i = 0; i < m->nodes * m->numbers; i++)
-    m->unknown[i] = is_unknown(m, i / m->numbers, i % m->numbers) ? m->unknowns++ : -1;
+  const int corners = s->count * s->nodes;
+  *of = (stars){DVI_NEW(int, m->nodes + 2), DVI_NEW(int, corners)};
+  if (of->start == NULL || of->number == NULL) return no_memory(m);
+  for (int i = 0; i < corners; i++)
+    if (s->corner[i].node >= 0) of->start[s->corner[i].node + 2]++;
+  for (int node = 0; node < m->nodes; node++) of->start[node + 2] += of->start[node + 1];
+  for (int i = 0; i < corners; i++)
+    if (s->corner[i].node >= 0) of->number[of->start[s->corner[i].node + 1]++] = i / s->nodes;
   return DVI_OK;
 }
 
-/* List the nodes at most `width` away from a node, ascending. Return their number. */
-static int neighbours(const dvi_moving *m, int node, int width, int *found)
+/* Put a number into an ascending list unless it is there. Return the new length. */
+static int insert(int number, int count, int *list)
 {
-  int count = 0;
-  for (int k = node - width; k <= node + width; k++) {
-    if (!m->periodic && (k < 0 || k >= m->nodes)) continue;
-    const int next = (k % m->nodes + m->nodes) % m->nodes;
-    int at = count;
-    while (at > 0 && found[at - 1] > next) at--;
-    if (at > 0 && found[at - 1] == next) continue;
-    for (int i = count++; i > at; i--) found[i] = found[i - 1];
-    found[at] = next;
-  }
-  return count;
+  int at = count;
+  while (at > 0 && list[at - 1] > number) at--;
+  if (at > 0 && list[at - 1] == number) return count;
+  memmove(list + at + 1, list + at, (size_t)(count - at) * sizeof *list);
+  list[at] = number;
+  return count + 1;
 }
 
-/* Make the pattern of blocks of nodes that are at most `width` apart. */
-static dvi_status make_pattern(const dvi_moving *m, int width, dvi__pattern *pattern)
+/* Make the pattern of nodes that have a stencil in common. */
+static dvi_status couple(const dvi_moving *m, const dvi__stencils *s, const stars *of,
+                         dvi__pattern *pattern)
 {
-  const int n = m->unknowns, most = (2 * width + 1) * m->numbers;
-  *pattern = (dvi__pattern){n, n, DVI_NEW(int, n + 1), DVI_NEW(int, (size_t)n *(size_t)most)};
+  const size_t most = (size_t)of->start[m->nodes] * (size_t)s->nodes;
+  *pattern = (dvi__pattern){m->nodes, m->nodes, DVI_NEW(int, m->nodes + 1), DVI_NEW(int, most)};
   if (pattern->start == NULL || pattern->row == NULL) return no_memory(m);
-  for (int i = 0, count = 0; i < m->nodes * m->numbers; i++) {
-    int near[2 * DVI__STENCIL_NODES + 1];
-    const int nodes = neighbours(m, i / m->numbers, width, near), column = m->unknown[i];
-    if (column < 0) continue;
-    for (int k = 0; k < nodes * m->numbers; k++) {
-      const int row = m->unknown[near[k / m->numbers] * m->numbers + k % m->numbers];
-      if (row >= 0) pattern->row[count++] = row;
-    }
-    pattern->start[column + 1] = count;
+  for (int node = 0; node < m->nodes; node++) {
+    int *row = pattern->row + pattern->start[node], count = 0;
+    for (int e = of->start[node]; e < of->start[node + 1]; e++)
+      for (int a = 0; a < s->nodes; a++) {
+        const int other = s->corner[of->number[e] * s->nodes + a].node;
+        if (other >= 0) count = insert(other, count, row);
+      }
+    pattern->start[node + 1] = pattern->start[node] + count;
   }
   return DVI_OK;
 }
+
+/* Make the pattern of unknowns whose nodes have a stencil in common. */
+static dvi_status make_pattern(const dvi_moving *m, const dvi__stencils *s, dvi__pattern *pattern)
+{
+  stars of = {0};
+  dvi__pattern nodes = {0};
+  int *first = DVI_NEW(int, m->nodes + 1);
+  dvi_status status = first != NULL ? find_stars(m, s, &of) : no_memory(m);
+  if (status == DVI_OK) status = couple(m, s, &of, &nodes);
+  for (int i = 0; i < m->nodes * m->numbers && status == DVI_OK; i++)
+    if (m->unknown[i] >= 0) first[i / m->numbers + 1] = m->unknown[i] + 1;
+  for (int node = 0; node < m->nodes && status == DVI_OK; node++)
+    if (first[node + 1] == 0) first[node + 1] = first[node];
+  if (status == DVI_OK) status = dvi__pattern_uneven_blocks(&nodes, first, pattern);
+  dvi__release(of.start);
+  dvi__release(of.number);
+  dvi__pattern_clear(&nodes);
+  dvi__release(first);
+  return status;
+}
+
+/* ---- places in them ---- */
 
 /* Give the coordinate of number i of a stencil, or -1. */
-static int coordinate(const dvi_moving *m, const dvi__stencils *of, int k, int i)
+static int coordinate(const dvi_moving *m, const dvi__stencils *s, int k, int i)
 {
-  const int node = of->first + k + i / m->numbers;
-  if (!m->periodic && (node < 0 || node >= m->nodes)) return -1;
-  return m->unknown[(node + m->nodes) % m->nodes * m->numbers + i % m->numbers];
+  const int node = s->corner[(size_t)k * (size_t)s->nodes + (size_t)(i / m->numbers)].node;
+  return node < 0 ? -1 : m->unknown[node * m->numbers + i % m->numbers];
 }
 
 static dvi_status place(const dvi_moving *m, const dvi__pattern *pattern, dvi__stencils *s)
@@ -84,20 +105,27 @@ static dvi_status place(const dvi_moving *m, const dvi__pattern *pattern, dvi__s
   return DVI_OK;
 }
 
+static dvi_status number_unknowns(dvi_moving *m)
+{
+  for (int i = 0; i < m->nodes * m->numbers; i++)
+    if (m->unknown[i] >= 0) m->unknown[i] = m->unknowns++;
+  if (m->unknowns > 0) return DVI_OK;
+  return dvi__fail(DVI_BAD_ARGUMENT,
+                   "moving: nothing is unknown: let the nodes move, or leave a value free");
+}
+
 dvi_status dvi__moving_lay_out(dvi_moving *m)
 {
   DVI_TRY(number_unknowns(m));
-  DVI_TRY(make_pattern(m, m->dispersion > 0 ? 2 : 1, &m->pattern));
-  m->cell = (dvi__stencils){.count = m->cells, .nodes = 2};
+  if (m->dispersion > 0 || m->viscosity > 0)
+    DVI_TRY(dvi__moving_chain(m, m->periodic ? -1 : 0, m->periodic ? m->nodes : m->cells - 1, 3,
+                              &m->bend));
+  DVI_TRY(make_pattern(m, m->dispersion > 0 ? &m->bend : &m->cell, &m->pattern));
   DVI_TRY(place(m, &m->pattern, &m->cell));
-  if (m->dispersion > 0) {
-    m->bend = (dvi__stencils){.count = m->periodic ? m->nodes : m->cells - 1, .nodes = 3};
-    m->bend.first = m->periodic ? -1 : 0;
-    DVI_TRY(place(m, &m->pattern, &m->bend));
-  }
+  if (m->dispersion > 0) DVI_TRY(place(m, &m->pattern, &m->bend));
   if (m->motion == DVI_MOVING_EQUAL) DVI_TRY(dvi__moving_lay_out_arcs(m));
   if (m->viscosity == 0) return DVI_OK;
-  DVI_TRY(make_pattern(m, 2, &m->drag_pattern));
-  m->drag = (dvi__stencils){.count = m->cells, .nodes = 4, .first = -1};
+  DVI_TRY(make_pattern(m, &m->bend, &m->drag_pattern));
+  DVI_TRY(dvi__moving_chain(m, -1, m->cells, 4, &m->drag));
   return place(m, &m->drag_pattern, &m->drag);
 }

@@ -64,7 +64,8 @@ static double gradient_size(const statics *s)
 {
   double stiff = 0;
   for (int i = 0; i < s->m.unknowns; i++) stiff = fmax(stiff, fabs(*diagonal(s, s->hessian, i)));
-  return stiff * fmax(dvi__largest((size_t)s->m.unknowns, s->q), s->m.length / s->m.cells);
+  return stiff * fmax(dvi__largest((size_t)s->m.unknowns, s->q),
+                      pow(s->m.volume / s->m.cells, 1.0 / s->m.dimension));
 }
 
 /* ---- one step ---- */
@@ -128,7 +129,7 @@ static dvi_status lower_kappa(statics *s, dvi_moving_report *report)
 {
   const double kappa = s->m.kappa;
   DVI_TRY(evaluate(s, s->q, &s->energy, NULL, NULL));
-  const double most = fabs(s->energy) / s->m.length;
+  const double most = fabs(s->energy) / s->m.volume;
   for (int k = 0; k < STAGES && s->m.motion == DVI_MOVING_FREE; k++) {
     s->m.kappa = most * pow(10, -k);
     if (s->m.kappa > kappa) DVI_TRY(minimise(s, &report->residual));

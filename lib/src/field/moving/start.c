@@ -1,4 +1,4 @@
-/* States from positions, values and waves, and back. */
+/* States from positions, values and waves. */
 #include <math.h>
 #include <string.h>
 
@@ -9,8 +9,7 @@
 /* Slopes at both sides of a node that are nearer than this are one slope. */
 static const double straight = 1e-7;
 
-/* Fail with what a callback returned. */
-static dvi_status refuse(dvi_status status, int returned)
+dvi_status dvi__moving_refuse(dvi_status status, int returned)
 {
   char reason[DVI__SENTENCE_SIZE];
   dvi__take_reason(reason);
@@ -21,10 +20,11 @@ static dvi_status refuse(dvi_status status, int returned)
 
 dvi_status dvi__moving_check(const dvi_moving *m, const dvi__moving_state *state)
 {
-  double y[4 * DVI__NODE_NUMBERS];
+  double y[2 * DVI__CELL_NODES * DVI__NODE_NUMBERS];
   for (int k = 0; k < m->cells; k++) {
-    const int returned = dvi__moving_gather(m, state, k, 2, y);
-    if (returned != 0) return refuse(DVI_BAD_ARGUMENT, returned);
+    const int returned = dvi__moving_gather(
+        m, state, m->cell.corner + (size_t)k * (size_t)m->cell.nodes, m->cell.nodes, y);
+    if (returned != 0) return dvi__moving_refuse(DVI_BAD_ARGUMENT, returned);
   }
   return DVI_OK;
 }
@@ -35,7 +35,7 @@ static dvi_status check_finite(const dvi_moving *m, const double *q, const doubl
     const int at = m->unknown[i], node = i / m->numbers, number = i % m->numbers;
     if (at < 0 || (isfinite(q[at]) && isfinite(v[at]))) continue;
     return dvi__fail(DVI_NOT_FINITE, "moving: at node %d %s is %g and its rate %g", node,
-                     number == 0 ? "the position" : "u", q[at], v[at]);
+                     number < m->dimension ? "the position" : "u", q[at], v[at]);
   }
   return DVI_OK;
 }
@@ -47,11 +47,16 @@ static dvi_status check_mass(const dvi_moving *m, const dvi__moving_state *state
 {
   double y[6 * DVI__NODE_NUMBERS];
   if (m->mu > 0 || !dvi__moving_is_free(m)) return DVI_OK;
+  if (m->dimension > 1)
+    return dvi__fail(DVI_SINGULAR, "moving: free nodes of a mesh have no mass where u is straight "
+                                   "along any line: give mu > 0, or prescribe the nodes");
   for (int k = 0; k < m->nodes; k++) {
     double corner = 0, size = 0;
     if (m->unknown[k * m->numbers] < 0) continue;
-    const int returned = dvi__moving_gather(m, state, k - 1, 3, y);
-    if (returned != 0) return refuse(DVI_BAD_ARGUMENT, returned);
+    const dvi__corner near[3] = {dvi__moving_corner(m, k - 1), dvi__moving_corner(m, k),
+                                 dvi__moving_corner(m, k + 1)};
+    const int returned = dvi__moving_gather(m, state, near, 3, y);
+    if (returned != 0) return dvi__moving_refuse(DVI_BAD_ARGUMENT, returned);
     const double *middle = y + m->numbers, *right = middle + m->numbers;
     for (int c = 1; c <= m->components; c++) {
       const double before = (middle[c] - y[c]) / (middle[0] - y[0]);
@@ -74,7 +79,7 @@ static dvi_status find_momenta(const dvi_moving *m, const dvi__moving_state *sta
   if (L_q == NULL) return dvi__fail(DVI_NO_MEMORY, "moving: no memory for momenta");
   const int returned = dvi__moving_sum(m, state, &(dvi__moving_sums){.L_q = L_q, .L_v = p});
   dvi__release(L_q);
-  if (returned != 0) return refuse(DVI_BAD_ARGUMENT, returned);
+  if (returned != 0) return dvi__moving_refuse(DVI_BAD_ARGUMENT, returned);
   for (int i = 0; i < m->unknowns; i++)
     if (!isfinite(p[i]))
       return dvi__fail(DVI_NOT_FINITE, "moving: momentum %d is %g: check the density", i, p[i]);
@@ -88,10 +93,9 @@ static void take(const dvi_moving *m, const double *x, const double *u, double *
   for (int i = 0; i < m->nodes * m->numbers; i++) {
     const int at = m->unknown[i], node = i / m->numbers, number = i % m->numbers;
     if (at < 0) continue;
-    if (number == 0)
-      q[at] = x != NULL ? x[node] : 0;
-    else
-      q[at] = u != NULL ? u[(number - 1) * (m->cells + 1) + node] : 0;
+    const double *from = number < m->dimension ? x : u;
+    const int k = number < m->dimension ? number : number - m->dimension;
+    q[at] = from != NULL ? from[k * m->listed + node] : 0;
   }
 }
 
@@ -109,7 +113,7 @@ dvi_status dvi_moving_project(const dvi_moving *moving, double t, const double *
   take(moving, x_rate, u_rate, made + n);
   dvi_status status = check_finite(moving, made, made + n);
   if (status == DVI_OK) status = dvi__moving_check(moving, &state);
-  if (status == DVI_OK) status = check_mass(moving, &state);
+  if (status == DVI_OK && (v != NULL || p != NULL)) status = check_mass(moving, &state);
   if (status == DVI_OK && p != NULL) status = find_momenta(moving, &state, made + 2 * n);
   double *wanted[3] = {q, v, p};
   for (size_t k = 0; k < 3 && status == DVI_OK; k++)
@@ -120,22 +124,53 @@ dvi_status dvi_moving_project(const dvi_moving *moving, double t, const double *
 
 /* ---- start ---- */
 
-static dvi_status evaluate(const dvi_moving *m, dvi_moving_wave *wave, void *user,
-                           dvi__wave_values *w)
+/* Put nodes where the path is at time 0, with its rate as velocity. */
+static int follow(const dvi_moving *m, dvi__wave_values *w)
 {
-  const int nodes = m->cells + 1;
-  memcpy(w->x, m->node, (size_t)nodes * sizeof *w->x);
   int returned = 0;
-  for (int k = 0; k < nodes && m->path != NULL && returned == 0; k++)
-    returned = dvi__moving_follow(m, 0, m->node[k], w->x + k, w->velocity + k);
-  if (returned != 0) return refuse(DVI_CALLBACK_FAILED, returned);
-  double *velocity = dvi__moving_is_free(m) ? w->velocity : w->u_t + nodes * m->components;
-  returned = wave(nodes, w->x, w->u, w->u_x, w->u_t, velocity, user);
+  for (int k = 0; k < m->listed && returned == 0; k++) {
+    double X[DVI_MOVING_AXES_MAX], x[DVI_MOVING_AXES_MAX] = {0}, rate[DVI_MOVING_AXES_MAX] = {0};
+    for (int i = 0; i < m->dimension; i++) X[i] = w->x[i * m->listed + k];
+    returned = dvi__moving_follow(m, 0, X, x, rate);
+    for (int i = 0; i < m->dimension; i++) {
+      w->x[i * m->listed + k] = x[i];
+      w->velocity[i * m->listed + k] = rate[i];
+    }
+  }
+  return returned;
+}
+
+/* Let nodes rest along the axes along which they cannot move. */
+static void hold(const dvi_moving *m, dvi__wave_values *w)
+{
+  for (int k = 0; k < m->nodes * m->dimension; k++) {
+    const int node = k / m->dimension, i = k % m->dimension;
+    if (m->unknown[node * m->numbers + i] < 0) w->velocity[i * m->listed + node] = 0;
+  }
+}
+
+/* Turn rates at places into those along the paths of nodes. */
+static void ride(const dvi_moving *m, dvi__wave_values *w)
+{
+  for (int c = 0; c < m->components; c++)
+    for (int k = 0; k < m->dimension * m->listed; k++)
+      w->u_t[c * m->listed + k % m->listed] += w->u_x[c * m->dimension * m->listed + k] *
+                                               w->velocity[k];
+}
+
+static dvi_status evaluate(const dvi_moving *m, dvi_moving_wave *wave, void *user,
+                           dvi__wave_values *w, double *unread)
+{
+  memcpy(w->x, m->node, (size_t)(m->dimension * m->listed) * sizeof *w->x);
+  int returned = m->path != NULL ? follow(m, w) : 0;
+  if (returned != 0) return dvi__moving_refuse(DVI_CALLBACK_FAILED, returned);
+  double *velocity = dvi__moving_is_free(m) ? w->velocity : unread;
+  returned = wave(m->listed, w->x, w->u, w->u_x, w->u_t, velocity, user);
   if (returned != 0)
     return dvi__fail(DVI_CALLBACK_FAILED, "moving: the wave returned %d", returned);
-  if (!m->periodic && dvi__moving_is_free(m)) w->velocity[0] = w->velocity[m->cells] = 0;
+  if (dvi__moving_is_free(m)) hold(m, w);
   if (m->motion == DVI_MOVING_EQUAL) DVI_TRY(dvi__moving_even_out(m, wave, user, w));
-  for (int i = 0; i < nodes * m->components; i++) w->u_t[i] += w->u_x[i] * w->velocity[i % nodes];
+  ride(m, w);
   return DVI_OK;
 }
 
@@ -144,87 +179,17 @@ dvi_status dvi_moving_start(const dvi_moving *moving, dvi_moving_wave *wave, voi
 {
   if (moving == NULL || wave == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "moving: a field and a wave are needed");
-  const size_t nodes = (size_t)moving->cells + 1, values = nodes * (size_t)moving->components;
-  double *work = DVI_NEW(double, 3 * (nodes + values));
+  const size_t places = (size_t)moving->listed * (size_t)moving->dimension,
+               values = (size_t)moving->listed * (size_t)moving->components,
+               slopes = values * (size_t)moving->dimension;
+  double *work = DVI_NEW(double, 3 * places + 2 * values + slopes);
   if (work == NULL) return dvi__fail(DVI_NO_MEMORY, "moving: no memory for a wave");
-  dvi__wave_values w = {.x = work, .velocity = work + nodes, .u = work + 2 * nodes};
-  w.u_x = w.u + values;
-  w.u_t = w.u_x + values;
-  dvi_status status = evaluate(moving, wave, user, &w);
+  dvi__wave_values w = {.x = work, .velocity = work + places, .u = work + 3 * places};
+  w.u_t = w.u + values;
+  w.u_x = w.u_t + values;
+  dvi_status status = evaluate(moving, wave, user, &w, work + 2 * places);
   if (status == DVI_OK)
     status = dvi_moving_project(moving, 0, w.x, w.u, w.velocity, w.u_t, q, v, p);
   dvi__release(work);
-  return status;
-}
-
-/* ---- back ---- */
-
-dvi_status dvi_moving_lift(const dvi_moving *moving, double t, const double *q, double *x,
-                           double *u)
-{
-  if (moving == NULL || q == NULL)
-    return dvi__fail(DVI_BAD_ARGUMENT, "moving: a field and coordinates are needed");
-  const dvi__moving_state state = {.t = t, .q = q};
-  const int nodes = moving->cells + 1;
-  for (int k = 0; k < nodes; k++) {
-    double y[2 * DVI__NODE_NUMBERS];
-    const int returned = dvi__moving_gather(moving, &state, k, 1, y);
-    if (returned != 0) return refuse(DVI_CALLBACK_FAILED, returned);
-    if (x != NULL) x[k] = y[0];
-    for (int c = 0; c < moving->components && u != NULL; c++) u[c * nodes + k] = y[1 + c];
-  }
-  return DVI_OK;
-}
-
-/* Find the cell of a point among ascending nodes, or -1. */
-static int find_cell(int cells, const double *node, double x)
-{
-  int first = 0, last = cells;
-  if (!(x >= node[0] && x <= node[cells])) return -1;
-  while (last - first > 1) {
-    const int middle = first + (last - first) / 2;
-    if (x < node[middle])
-      last = middle;
-    else
-      first = middle;
-  }
-  return first;
-}
-
-static dvi_status evaluate_at(const dvi_moving *m, const double *node, int slope, int64_t count,
-                              const double *x, double *u)
-{
-  const double *value = node + m->cells + 1;
-  for (int64_t i = 0; i < count; i++) {
-    const double turn = m->periodic ? floor((x[i] - node[0]) / m->length) : 0;
-    const double shifted = x[i] - turn * m->length;
-    const double inside = m->periodic && isfinite(shifted)
-                              ? fmin(fmax(shifted, node[0]), node[m->cells])
-                              : x[i];
-    const int cell = find_cell(m->cells, node, inside);
-    if (cell < 0)
-      return dvi__fail(DVI_BAD_ARGUMENT, "moving: the point x = %.6g is outside of %.6g to %.6g",
-                       x[i], node[0], node[m->cells]);
-    const double h = node[cell + 1] - node[cell], a = (inside - node[cell]) / h;
-    for (int c = 0; c < m->components; c++) {
-      const double *ends = value + (int64_t)c * (m->cells + 1) + cell;
-      u[c * count + i] = slope ? (ends[1] - ends[0]) / h
-                               : (1 - a) * ends[0] + a * ends[1] + turn * m->jump[c];
-    }
-  }
-  return DVI_OK;
-}
-
-dvi_status dvi_moving_evaluate(const dvi_moving *moving, double t, const double *q, int slope,
-                               int64_t count, const double *x, double *u)
-{
-  if (moving == NULL || q == NULL || count < 0 || (count > 0 && (x == NULL || u == NULL)))
-    return dvi__fail(DVI_BAD_ARGUMENT, "moving: a field, coordinates and points are needed");
-  DVI_TRY(dvi__moving_check(moving, &(dvi__moving_state){.t = t, .q = q}));
-  double *node = DVI_NEW(double, (moving->cells + 1) * moving->numbers);
-  if (node == NULL) return dvi__fail(DVI_NO_MEMORY, "moving: no memory for nodes");
-  dvi_status status = dvi_moving_lift(moving, t, q, node, node + moving->cells + 1);
-  if (status == DVI_OK) status = evaluate_at(moving, node, slope, count, x, u);
-  dvi__release(node);
   return status;
 }

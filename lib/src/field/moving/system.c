@@ -42,7 +42,7 @@ static int has_variable(const dvi_moving *m, int component, int rate)
 {
   for (int j = 0; j < m->part.variables; j++) {
     const dvi_jet *z = &m->part.variable[j];
-    if (z->component == component && z->order[0] == 0 && !z->rate == !rate) return 1;
+    if (z->component == component && z->order[0] + z->order[1] == 0 && !z->rate == !rate) return 1;
   }
   return 0;
 }
@@ -50,9 +50,10 @@ static int has_variable(const dvi_moving *m, int component, int rate)
 /* Tell if a translation of one number of all nodes leaves the Lagrangian as it is. */
 static int is_symmetry(const dvi_moving *m, int number)
 {
-  if (number == 0) return m->periodic && m->translations && dvi__moving_is_free(m);
-  const int fixed = !m->periodic && (m->fixed[0] || m->fixed[1]);
-  return !fixed && m->mean.mean == NULL && !has_variable(m, number - 1, 0);
+  for (int k = 0; k < m->nodes; k++)
+    if (m->unknown[k * m->numbers + number] < 0) return 0;
+  if (number < m->dimension) return m->translations;
+  return m->mean.mean == NULL && !has_variable(m, number - m->dimension, 0);
 }
 
 static int find_symmetries(dvi_moving *m, dvi_symmetry *symmetry)
@@ -62,10 +63,11 @@ static int find_symmetries(dvi_moving *m, dvi_symmetry *symmetry)
     dvi__number_translation *of = &m->translation[count];
     if (!is_symmetry(m, k)) continue;
     *of = (dvi__number_translation){.moving = m, .number = k};
-    if (k > 0 && m->components > 1)
-      (void)snprintf(of->name, sizeof of->name, "momentum_u%d", k);
+    const int component = k - m->dimension;
+    if (component >= 0 && m->components > 1)
+      (void)snprintf(of->name, sizeof of->name, "momentum_u%d", component + 1);
     else
-      (void)snprintf(of->name, sizeof of->name, "momentum_%s", k > 0 ? "u" : "x");
+      (void)snprintf(of->name, sizeof of->name, "momentum_%c", component >= 0 ? 'u' : "xy"[k]);
     symmetry[count++] = (dvi_symmetry){.name = of->name, .generator = translate, .user = of};
   }
   return count;
@@ -124,27 +126,34 @@ static dvi_holonomic arcs_of(dvi_moving *m)
                          .user = m};
 }
 
+dvi_status dvi_moving_system_terms(dvi_moving *moving, dvi_system_terms *terms)
+{
+  if (moving == NULL || terms == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "moving: a field and a place for terms are needed");
+  DVI_TRY(check_rates(moving));
+  const int symmetries = find_symmetries(moving, moving->symmetry);
+  const int is_viscous = moving->viscosity > 0, is_equal = moving->motion == DVI_MOVING_EQUAL;
+  moving->lagrangian = lagrangian_of(moving);
+  moving->viscous = viscosity_of(moving);
+  moving->equal = arcs_of(moving);
+  *terms = (dvi_system_terms){.dimension = moving->unknowns,
+                              .lagrangian = &moving->lagrangian,
+                              .symmetries = symmetries > 0 ? moving->symmetry : NULL,
+                              .symmetry_count = symmetries,
+                              .forces = is_viscous ? &moving->viscous : NULL,
+                              .force_count = is_viscous,
+                              .holonomics = is_equal ? &moving->equal : NULL,
+                              .holonomic_count = is_equal,
+                              .autonomous = moving->path == NULL && !moving->part.depends_on_time};
+  return DVI_OK;
+}
+
 dvi_status dvi_moving_system(dvi_moving *moving, dvi_system **system)
 {
-  if (moving == NULL || system == NULL)
+  dvi_system_terms terms;
+  if (system == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "moving: a field and a place for the system are needed");
   *system = NULL;
-  DVI_TRY(check_rates(moving));
-  dvi_symmetry symmetry[DVI__NODE_NUMBERS];
-  const int symmetries = find_symmetries(moving, symmetry);
-  const int is_viscous = moving->viscosity > 0, is_equal = moving->motion == DVI_MOVING_EQUAL;
-  const dvi_lagrangian lagrangian = lagrangian_of(moving);
-  const dvi_force viscosity = viscosity_of(moving);
-  const dvi_holonomic arcs = arcs_of(moving);
-  const dvi_system_terms terms = {.dimension = moving->unknowns,
-                                  .lagrangian = &lagrangian,
-                                  .symmetries = symmetries > 0 ? symmetry : NULL,
-                                  .symmetry_count = symmetries,
-                                  .forces = is_viscous ? &viscosity : NULL,
-                                  .force_count = is_viscous,
-                                  .holonomics = is_equal ? &arcs : NULL,
-                                  .holonomic_count = is_equal,
-                                  .autonomous = moving->path == NULL &&
-                                                !moving->part.depends_on_time};
+  DVI_TRY(dvi_moving_system_terms(moving, &terms));
   return dvi_system_create(&terms, system);
 }
