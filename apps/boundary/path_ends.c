@@ -1,5 +1,6 @@
 #include "boundary/path_ends.h"
 
+#include <dvi/scene.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -95,12 +96,17 @@ static int read_ends(const path_request *request, const problem *scene, const po
   code = read_end("path: --from", request->from, scene, guessed && fixed ? guess->q : scene->q,
                   a->q0);
   if (fixed) {
-    if (request->to == NULL && !guessed)
-      return usage_error("path: --ends fixed needs --to, or --guess FILE that leads there");
+    dvi_scene_end end = {.q = NULL};
+    const bool is_of_scene = dvi_scene_density(scene->scene) != NULL &&
+                             dvi_scene_end_of(scene->scene, &end);
+    if (request->to == NULL && !guessed && !is_of_scene)
+      return usage_error(
+          "path: --ends fixed needs --to, or --guess FILE that leads there%s",
+          dvi_scene_density(scene->scene) != NULL ? ", or the section final of the scene" : "");
     options->q1 = a->q1;
     if (code == DONE)
       code = read_end("path: --to", request->to, scene,
-                      guessed ? guess->q + (size_t)(guess->count - 1) * (size_t)scene->nq : NULL,
+                      guessed ? guess->q + (size_t)(guess->count - 1) * (size_t)scene->nq : end.q,
                       a->q1);
   } else {
     options->p0 = a->p0;

@@ -20,6 +20,7 @@ static int member_create(const char *name, const path_request *request, const wo
   path_request own = *request;
   int code = open_problem(name, settings, &m->scene);
   if (code == DONE) code = open_wish("path", m->scene, &own.method);
+  if (code == DONE) code = refuse_march(m->scene, own.method);
   if (code == DONE && m->scene->terms->factors != NULL)
     code = usage_error("path: %s has factors, and paths are found between ends in R^n; dvi run "
                        "goes forward from its start",

@@ -109,22 +109,48 @@ static dvi_status find_state(const problem *scene, double *U)
   return status == DVI_OK ? dvi_density_solve(density_of(scene), U, NULL) : status;
 }
 
-/* Find the lowest stationary states of Schroedinger's equation, which are real. */
-static dvi_status find_states(const modes_request *r, const dvi_schroedinger *equation,
-                              double *energy, double *mode)
+/* ---- stationary states ---- */
+
+/* Write the states [count][functions], which are real, with an imaginary part of zeros. */
+static int write_states(const modes_request *r, const problem *scene, const double *psi)
 {
-  const size_t functions = (size_t)dvi_space_functions(dvi_schroedinger_space(equation));
-  double *psi = calloc((size_t)r->count * functions, sizeof *psi);
-  if (psi == NULL) return DVI_NO_MEMORY;
+  const size_t all = (size_t)density_coefficients(density_of(scene)), functions = all / 2;
+  double *U = calloc((size_t)r->count * all, sizeof *U);
+  if (U == NULL) {
+    complain("out of memory");
+    return FAILED;
+  }
+  for (size_t i = 0; i < (size_t)r->count; i++)
+    memcpy(U + i * all, psi + i * functions, functions * sizeof *U);
+  int code = r->shapes != NULL ? density_write(scene, r->shapes, (int)r->count, U) : DONE;
+  if (code == DONE && r->vtu != NULL) code = density_view(scene, r->vtu, (int)r->count, U);
+  free(U);
+  return code;
+}
+
+static int find_states(const modes_request *r, const problem *scene,
+                       const dvi_schroedinger *equation)
+{
+  const int64_t functions = dvi_space_functions(dvi_schroedinger_space(equation));
+  double *energy = calloc((size_t)r->count * (size_t)(1 + functions), sizeof *energy);
+  if (energy == NULL) {
+    complain("out of memory");
+    return FAILED;
+  }
+  double *const psi = energy + r->count;
   const dvi_status status = dvi_schroedinger_modes(equation, (int)r->count, energy, psi);
-  for (size_t i = 0; i < (size_t)r->count && status == DVI_OK; i++)
-    memcpy(mode + 2 * i * functions, psi + i * functions, functions * sizeof *psi);
-  free(psi);
-  return status;
+  int code = status == DVI_OK ? print_spectrum(r, scene, energy) : library_error(status);
+  if (status == DVI_BAD_SIZE) code = USAGE; /* more states than the space has */
+  if (code == DONE) code = write_states(r, scene, psi);
+  free(energy);
+  return code;
 }
 
 static int find_spectrum(const modes_request *r, const problem *scene, const dvi_density *density)
 {
+  const dvi_schroedinger *equation = dvi_scene_schroedinger(scene->scene);
+  if (equation != NULL && isnan(r->near) && !r->at_static_state)
+    return find_states(r, scene, equation);
   const size_t all = (size_t)density_coefficients(density), count = (size_t)r->count;
   const dvi_modes_options options = {
       .size = sizeof options, .count = (int)r->count, .shift = isnan(r->near) ? 0.0 : r->near};
@@ -134,13 +160,8 @@ static int find_spectrum(const modes_request *r, const problem *scene, const dvi
     return FAILED;
   }
   double *const U = eigenvalue + count, *const mode = U + all;
-  const dvi_schroedinger *equation = NULL;
-  (void)dvi_scene_schroedinger(scene->scene, &equation);
   dvi_status status = r->at_static_state ? find_state(scene, U) : DVI_OK;
-  if (status == DVI_OK)
-    status = equation != NULL && isnan(r->near) && !r->at_static_state
-                 ? find_states(r, equation, eigenvalue, mode)
-                 : dvi_density_modes(density, &options, U, eigenvalue, mode);
+  if (status == DVI_OK) status = dvi_density_modes(density, &options, U, eigenvalue, mode);
   int code = status == DVI_OK ? print_spectrum(r, scene, eigenvalue) : library_error(status);
   if (status == DVI_BAD_SIZE) code = USAGE; /* more modes than the field has */
   if (code == DONE && r->shapes != NULL)
@@ -162,10 +183,12 @@ static const char *const details[] = {
     "spectrum in the columns of a run.\n",
     "The modes of fields with a density (section 'density') are those of small motions about 0, or "
     "with --static about the static state near the scene's start. All parts of the density count. "
-    "Those of the section 'schroedinger' are the lowest energies of the equation without "
-    "interaction, and its states.\n",
+    "With one-forms the eigenvalues are the lambda of H x = lambda N x with the Hessians of the "
+    "energy and of the norm, in which real and imaginary parts are two. Of the section "
+    "schroedinger "
+    "they are the energies of stationary states without interaction, each once.\n",
     "Columns of --csv: index, eigenvalue, omega, ascending. Columns of --shapes: the position of "
-    "the quadrature points, and the value of each component of each mode.\n",
+    "the vertices, and the value of each component of each mode.\n",
     "Examples:\n"
     "  dvi modes drum.yaml --count 6\n"
     "  dvi modes drum.yaml --count 3 --near 100 --csv - --vtu modes.vtu\n"

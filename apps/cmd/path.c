@@ -137,7 +137,7 @@ static const option command_options[] = {
     {.name = "to",
      OPTION_AT(path_request, to),
      .value = "Q",
-     .help = "the last node; default: the guess's end"},
+     .help = "the last node; default: the guess's end, or of a density the scene's section final"},
     {.name = "momentum",
      OPTION_AT(path_request, momentum),
      .value = "P",

@@ -10,6 +10,7 @@
 #include "cli/command.h"
 #include "csv/events.h"
 #include "cli/file.h"
+#include "load/density.h"
 #include "load/open.h"
 #include "cli/options.h"
 #include "cli/outputs.h"
@@ -266,6 +267,7 @@ static int run_problem(run_request *request, const char *name)
   scene_warn("run", scene);
   if (request->verify) code = refuse_noise("run: --verify", scene);
   if (code == DONE) code = open_wish("run", scene, &request->method);
+  if (code == DONE) density_warn("run", scene, request->method);
   if (code == DONE) code = place_momenta(request, scene);
   if (code == DONE) code = check_events(request, scene);
   if (code == DONE) code = run_check_settings(request, scene);

@@ -11,6 +11,7 @@
 #include "csv/table.h"
 #include "load/density.h"
 #include "load/field.h"
+#include "load/open.h"
 #include "load/scene.h"
 
 /* The options. */
@@ -169,22 +170,126 @@ static int tell_state(const solve_request *r, const problem *scene, const dvi_de
   return status == DVI_OK ? DONE : library_error(status);
 }
 
-static int solve_density(const solve_request *r, const problem *scene, const dvi_density *density)
+/* ---- ground states ---- */
+
+/* Print the norm and mu, and what is watched of the state, the energy first. */
+static dvi_status tell_ground(const solve_request *r, const problem *scene, double mu,
+                              const double *U)
+{
+  FILE *stream = r->csv != NULL && strcmp(r->csv, "-") == 0 ? stderr : stdout;
+  (void)fprintf(stream, "Ground state of %s\n", scene->name);
+  (void)fprintf(stream, "%-10s %.12g\n", "norm", dvi_scene_ground_norm(scene->scene));
+  (void)fprintf(stream, "%-10s %.12g\n", "mu", mu);
+  const dvi_status status = print_watched(stream, scene, density_of(scene), U);
+  return status == DVI_OK ? print_ranges(stream, scene, density_of(scene), U) : status;
+}
+
+/* The state is real. Its imaginary part stays as it is, 0. */
+static int solve_ground(const solve_request *r, const problem *scene, double *U)
+{
+  const dvi_schroedinger *equation = dvi_scene_schroedinger(scene->scene);
+  double mu = 0;
+  if (equation == NULL) return library_error(DVI_UNSUPPORTED);
+  dvi_status status = dvi_schroedinger_ground(equation, dvi_scene_ground_norm(scene->scene), &mu,
+                                              NULL, U);
+  if (status == DVI_OK) status = tell_ground(r, scene, mu, U);
+  return status == DVI_OK ? DONE : library_error(status);
+}
+
+static int solve_static(const solve_request *r, const problem *scene, double *U)
 {
   const double *q, *v, *p;
+  const dvi_density *density = density_of(scene);
   dvi_field_solve_report report = {0};
+  dvi_scene_start(scene->scene, &q, &v, &p);
+  dvi_status status = dvi_density_lift(density, 0, q, U);
+  if (status == DVI_OK) status = dvi_density_solve(density, U, &report);
+  return status == DVI_OK ? tell_state(r, scene, density, U, &report) : library_error(status);
+}
+
+static int solve_density(const solve_request *r, const problem *scene, const dvi_density *density)
+{
   double *U = calloc((size_t)density_coefficients(density), sizeof *U);
   if (U == NULL) {
     complain("out of memory");
     return FAILED;
   }
-  dvi_scene_start(scene->scene, &q, &v, &p);
-  dvi_status status = dvi_density_lift(density, 0, q, U);
-  if (status == DVI_OK) status = dvi_density_solve(density, U, &report);
-  int code = status == DVI_OK ? tell_state(r, scene, density, U, &report) : library_error(status);
+  int code = dvi_scene_ground_norm(scene->scene) > 0 ? solve_ground(r, scene, U)
+                                                     : solve_static(r, scene, U);
   if (code == DONE && r->csv != NULL) code = density_write(scene, r->csv, 1, U);
   if (code == DONE && r->vtu != NULL) code = density_view(scene, r->vtu, 1, U);
   free(U);
+  return code;
+}
+
+/* ---- meshes that move ---- */
+
+/* Print the probes of a state. */
+static dvi_status print_probes(FILE *stream, const problem *scene, const double *q)
+{
+  const dvi_system_terms *terms = dvi_scene_terms(scene->scene);
+  for (int i = 0; i < terms->invariant_count; i++) {
+    const dvi_invariant *probe = terms->invariants + i;
+    double value = 0;
+    if (probe->value(0, q, NULL, &value, probe->user) != 0) return DVI_CALLBACK_FAILED;
+    (void)fprintf(stream, "%-10s %.12g\n", probe->name, value);
+  }
+  return DVI_OK;
+}
+
+/* Write the positions and values of all nodes. */
+static int write_nodes(const char *path, const problem *scene, const dvi_moving *moving,
+                       const double *q)
+{
+  enum { MOST = DVI_MOVING_COMPONENTS_MAX };
+  int cells, components = 0;
+  (void)dvi_moving_nodes(moving, &cells);
+  table_column column[MOST + 2] = {{"x", ""}};
+  for (const char *name;
+       components < MOST && (name = dvi_scene_component(scene->scene, components)) != NULL;
+       components++)
+    column[1 + components] = (table_column){name, ""};
+  const size_t nodes = (size_t)cells + 1;
+  double *x = calloc(nodes * (size_t)(1 + components), sizeof *x);
+  if (x == NULL) {
+    complain("out of memory");
+    return FAILED;
+  }
+  result_table *rows = table_create(column);
+  const dvi_status status = dvi_moving_lift(moving, 0, q, x, x + nodes);
+  for (size_t i = 0; i < nodes; i++)
+    for (int k = 0; k <= components; k++) table_number(rows, x[(size_t)k * nodes + i]);
+  const bool good = status == DVI_OK && table_good(rows) && table_write(rows, path);
+  table_destroy(&rows);
+  free(x);
+  return good ? DONE : status != DVI_OK ? library_error(status) : FAILED;
+}
+
+static int solve_moving(const solve_request *r, const problem *scene, const dvi_moving *moving)
+{
+  const double *start, *v, *p;
+  const size_t n = (size_t)dvi_scene_terms(scene->scene)->dimension;
+  dvi_moving_report report = {0};
+  FILE *stream = r->csv != NULL && strcmp(r->csv, "-") == 0 ? stderr : stdout;
+  double *q = calloc(n + 1, sizeof *q);
+  if (q == NULL) {
+    complain("out of memory");
+    return FAILED;
+  }
+  dvi_scene_start(scene->scene, &start, &v, &p);
+  memcpy(q, start, n * sizeof *q);
+  dvi_status status = dvi_moving_solve(moving, q, &report);
+  if (status == DVI_OK) {
+    (void)fprintf(stream, "Static state of %s\n", scene->name);
+    (void)fprintf(stream, "unknowns   %zu\niterations %d\nresidual   %.2e\n", n, report.iterations,
+                  report.residual);
+    (void)fprintf(stream, "%-10s %.12g\n%-10s %.12g\n", "energy", report.energy, "barrier",
+                  report.barrier);
+    status = print_probes(stream, scene, q);
+  }
+  int code = status == DVI_OK ? DONE : library_error(status);
+  if (code == DONE && r->csv != NULL) code = write_nodes(r->csv, scene, moving, q);
+  free(q);
   return code;
 }
 
@@ -198,9 +303,13 @@ static const char *const details[] = {
     "with a = eps, and the charges as the source. What is static of 'field: maxwell' is what a run "
     "with losses tends to.\n",
     "The static state of fields with a density (section 'density') is that where the derivatives "
-    "of all parts without rates vanish, found by Newton's method from the scene's start.\n",
-    "Columns of --csv: vertex, its coordinates, u. Of a density: the position of the quadrature "
-    "points, and the value of each component.\n",
+    "of all parts without rates vanish, found by Newton's method from the scene's start. With "
+    "'solve: ground' it is the ground state of the section schroedinger, of norm 1 or that of "
+    "'solve: {ground: NORM}': mu is its chemical potential. On a mesh that "
+    "moves ('moving') nodes and values are found together, energy and barrier are those of the "
+    "action, and --csv has the nodes.\n",
+    "Columns of --csv: vertex, its coordinates, u. Of a density: the position of the vertices, and "
+    "the value of each component and of |psi|^2 of a complex field.\n",
     "Examples:\n"
     "  dvi solve membrane.yaml\n"
     "  dvi solve membrane.yaml --csv values.csv --vtu values.vtu\n",
@@ -244,7 +353,15 @@ int solve_command(int argc, char **argv)
   const named_file files[] = {{"csv", r.csv}, {"vtu", r.vtu}};
   code = outputs_distinct("solve", 2, files);
   if (code != DONE) return code;
-  code = field_open("solve", name, &r.settings, &scene, &field, &density);
+  code = open_any(name, &r.settings, &scene);
+  if (code != DONE) return code;
+  if (dvi_scene_moving(scene->scene) != NULL) {
+    code = r.vtu == NULL ? solve_moving(&r, scene, dvi_scene_moving(scene->scene))
+                         : usage_error("solve: --vtu is for meshes at rest; --csv has the nodes");
+    problem_destroy(&scene);
+    return code;
+  }
+  code = field_choose("solve", name, &scene, &field, &density);
   if (code != DONE) return code;
   if (density != NULL) {
     code = solve_density(&r, scene, density);

@@ -3,6 +3,7 @@
 #include <dvi/scene.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "cli/command.h"
 #include "csv/table.h"
@@ -18,6 +19,14 @@ const dvi_density *density_of(const problem *scene)
 bool has_field(const problem *scene)
 {
   return density_of(scene) != NULL || dvi_scene_field(scene->scene) != NULL;
+}
+
+void density_warn(const char *command, const problem *scene, const char *method)
+{
+  if (dvi_scene_schroedinger(scene->scene) == NULL || strncmp(method, "vprk", 4) == 0) return;
+  complain("%s: %s does not keep the norm of the wave function; midpoint, gauss:stages=2, "
+           "split:order=4 and vprk do",
+           command, method);
 }
 
 int64_t field_unknowns(const problem *scene)
@@ -111,7 +120,7 @@ int density_views_make(const problem *scene, int fields, density_views *views)
   choose_quantities(v);
   views->count = fields * v->shown;
   if (!place_points(v)) return out_of_memory();
-  const size_t count = (size_t)views->count;
+  const size_t count = (size_t)views->count + 1;
   views->view = calloc(count, sizeof *views->view);
   v->value = calloc(count * (size_t)v->points, sizeof *v->value);
   v->name = calloc(count, sizeof *v->name);

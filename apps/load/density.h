@@ -12,6 +12,9 @@ const dvi_density *density_of(const problem *scene);
 /** Return whether a problem is a field, with a density or on a mesh alone. */
 bool has_field(const problem *scene);
 
+/** Tell that a mechanical method does not keep the norm of Schroedinger's equation. */
+void density_warn(const char *command, const problem *scene, const char *method);
+
 /** Return the number of unknowns of a field. */
 int64_t field_unknowns(const problem *scene);
 

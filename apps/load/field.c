@@ -10,14 +10,23 @@
 
 enum { NAME_SIZE = 32 };
 
-int field_open(const char *command, const char *name, const words *settings, problem **scene,
-               const dvi_field **field, const dvi_density **density)
+/* Refuse a mesh that moves, of which a command knows nothing. */
+static int refuse_moving(const char *command, problem **scene)
 {
-  const int code = open_any(name, settings, scene);
-  if (code != DONE) return code;
+  const int code = usage_error(
+      "%s: the mesh of %s moves; dvi run and dvi solve are for such scenes", command,
+      (*scene)->name);
+  problem_destroy(scene);
+  return code;
+}
+
+int field_choose(const char *command, const char *name, problem **scene, const dvi_field **field,
+                 const dvi_density **density)
+{
   if (dvi_scene_grid_only((*scene)->scene) != NULL) return refuse_grid(scene, false);
   *field = dvi_scene_field((*scene)->scene);
   if (*field != NULL || (density != NULL && (*density = density_of(*scene)) != NULL)) return DONE;
+  if (dvi_scene_moving((*scene)->scene) != NULL) return refuse_moving(command, scene);
   const bool has_density = density_of(*scene) != NULL;
   problem_destroy(scene);
   if (has_density)
@@ -27,6 +36,13 @@ int field_open(const char *command, const char *name, const words *settings, pro
         command, name);
   return usage_error("%s: '%s' has no field; a scene with the sections mesh and field has one",
                      command, name);
+}
+
+int field_open(const char *command, const char *name, const words *settings, problem **scene,
+               const dvi_field **field, const dvi_density **density)
+{
+  const int code = open_any(name, settings, scene);
+  return code == DONE ? field_choose(command, name, scene, field, density) : code;
 }
 
 const dvi_mesh *field_mesh(const dvi_field *field)

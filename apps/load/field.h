@@ -13,6 +13,10 @@
 int field_open(const char *command, const char *name, const words *settings, problem **scene,
                const dvi_field **field, const dvi_density **density);
 
+/** Do the same for a scene that is open. It is destroyed if it is refused. */
+int field_choose(const char *command, const char *name, problem **scene, const dvi_field **field,
+                 const dvi_density **density);
+
 /** Return the mesh of a field. */
 const dvi_mesh *field_mesh(const dvi_field *field);
 

@@ -275,16 +275,21 @@ static int open_one_monitor(const problem *scene, const char *asked, const char 
   return DONE;
 }
 
+int refuse_march(const problem *scene, const char *method)
+{
+  if (!dvi_scene_marches(scene->scene, method)) return DONE;
+  return usage_error(
+      "%s is a march of a field, for dvi run, check, explain, order, and bench without --scale; "
+      "a mechanical method such as verlet is wanted here",
+      method);
+}
+
 /* Refuse a method, with its place in the scene or on the command line. */
 static int refuse_method(const problem *scene, const char *method)
 {
   char hint[HINT_SIZE], sentence[MESSAGE_SIZE], message[2 * MESSAGE_SIZE];
   const bool has_field = dvi_scene_field(scene->scene) != NULL;
-  if (dvi_scene_marches(scene->scene, method))
-    return usage_error(
-        "%s is a march of a field, for dvi run, check, explain, order, and bench without --scale; "
-        "a mechanical method such as verlet is wanted here",
-        method);
+  if (refuse_march(scene, method) != DONE) return USAGE;
   hint_at_method(method, has_field ? march_name_at : method_name_at, hint);
   const char *error = dvi_last_error(), *list = strstr(error, "; there are galerkin");
   const bool said = strstr(error, "did you mean") != NULL, names = has_field && list != NULL;

@@ -33,6 +33,10 @@ int open_shaped(const char *name, const words *settings, bool one_point, problem
  * needs a method. */
 int open_wish(const char *command, const problem *scene, const char **method);
 
+/** Refuse a march of the scene's field, for a command that takes mechanical methods. Returns DONE
+ * for any other method. */
+int refuse_march(const problem *scene, const char *method);
+
 /** Refuse a problem with noise, for a command that measures errors. Returns DONE without noise. */
 int refuse_noise(const char *command, const problem *scene);
 

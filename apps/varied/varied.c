@@ -23,10 +23,9 @@ static int derive(const char *command, varied *made, const char *method)
   const size_t numbers = (size_t)made->n * (size_t)made->count;
   dvi_status status = dvi_scene_depend(scene, &dependence, message, sizeof message);
   if (status == DVI_UNSUPPORTED)
-    return usage_error(
-        "%s: %s has no Lagrangian of R^n, which derivatives of runs are for; a field "
-        "on a mesh has none",
-        command, made->scene->name);
+    return usage_error("%s: %s has no Lagrangian of R^n, which derivatives of runs are for; fields "
+                       "have none",
+                       command, made->scene->name);
   if (status != DVI_OK) return complain("%s", message), USAGE;
   made->by_q = calloc(numbers + 1, sizeof *made->by_q);
   made->by_p = calloc(numbers + 1, sizeof *made->by_p);

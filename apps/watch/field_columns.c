@@ -26,6 +26,15 @@ static bool is_among(const field_columns *c, int first, const char *name)
   return false;
 }
 
+/* Tell if a probe of a density takes the name of an observable. Marches on meshes know the probes
+ * themselves. */
+static bool is_probe(const field_columns *c, int invariants, const char *name)
+{
+  for (int i = 0; i < invariants && density_of(c->scene) != NULL; i++)
+    if (strcmp(c->scene->terms->invariants[i].name, name) == 0) return true;
+  return false;
+}
+
 static bool list_all(field_columns *c)
 {
   int observables = 0;
@@ -33,11 +42,13 @@ static bool list_all(field_columns *c)
   while (dvi_march_observable(c->march, observables) != NULL) observables++;
   c->all = calloc((size_t)(observables + invariants) + 1, sizeof *c->all);
   if (c->all == NULL) return false;
-  for (int i = 0; i < observables; i++)
-    c->all[c->there++] = (field_column){dvi_march_observable(c->march, i), i, -1};
+  for (int i = 0; i < observables; i++) {
+    const char *name = dvi_march_observable(c->march, i);
+    if (!is_probe(c, invariants, name)) c->all[c->there++] = (field_column){name, i, -1};
+  }
   for (int i = 0; i < invariants; i++) {
     const char *name = c->scene->terms->invariants[i].name;
-    if (!is_among(c, observables, name)) c->all[c->there++] = (field_column){name, -1, i};
+    if (!is_among(c, c->there, name)) c->all[c->there++] = (field_column){name, -1, i};
   }
   return true;
 }
@@ -50,10 +61,12 @@ static const char *name_at(int k, const void *list)
 
 /* ---- what is shown ---- */
 
-/* The laws of charge take a look at the whole field, and are shown when they are asked for. */
+/* The laws of charge take a look at the whole field, and are shown when they are asked for, as the
+ * parts of the energy. */
 static bool is_usual(const char *name)
 {
-  static const char *const on_demand[] = {"gauss", "charge", "divergence"};
+  static const char *const on_demand[] = {"gauss",   "charge",    "divergence",
+                                          "kinetic", "potential", "interaction"};
   for (size_t k = 0; k < sizeof on_demand / sizeof *on_demand; k++)
     if (strcmp(name, on_demand[k]) == 0) return false;
   return true;

@@ -56,8 +56,8 @@ fences c README.md >"$work/readme.c"
 cmp -s "$work/readme.c" apps/examples/pendulum.c ||
   breach "README.md: its program is not apps/examples/pendulum.c"
 for program in shapes:shapes fields/waves:drum fields/forms:hole fields/maxwell:cavity \
-  fields/multiscale:rapid_rod fields/moving:kink fields/multisymplectic:breather \
-  fields/schroedinger:tunnel; do
+  fields/densities:collision fields/multiscale:rapid_rod fields/moving:kink \
+  fields/multisymplectic:breather fields/schroedinger:tunnel; do
   page=docs/${program%:*}.md
   example=apps/examples/${program#*:}.c
   fences c "$page" >"$work/program.c"

@@ -77,7 +77,7 @@ START_TEST(sections_of_densities_belong_together)
           ":1:9:", "the section 'fields' is missing");
   section_refused("schroedinger: {}", 15, "beside it there is no other one");
   section_refused("coordinates: {y: scalar}", 1, "has no section 'coordinates'");
-  section_refused("solve: {mean: 1}", 1, "has no section 'solve'");
+  section_refused("solve: {mean: 1}", 8, "asks for a ground state");
 }
 END_TEST
 
@@ -110,10 +110,12 @@ END_TEST
 
 START_TEST(fields_are_numbers_and_vectors)
 {
-  refused("domain: {x: [0, 1]}\nfields: {R: rotation}\ndensity: 1\n",
-          ":2:13:", "a field is scalar, complex or vector(d)");
+  refused("domain: {x: [0, 1]}\nfields: {R: spinor}\ndensity: 1\n",
+          ":2:13:", "a field is scalar, complex, vector(d) or rotation");
   refused("domain: {x: [0, 1]}\nfields: {u: vector}\ndensity: 1\n",
-          ":2:13:", "a field is scalar, complex or vector(d)");
+          ":2:13:", "a field is scalar, complex, vector(d) or rotation");
+  refused("domain: {x: [0, 1]}\nfields: {R: rotation, u: scalar}\ndensity: 1\n",
+          ":2:9:", "is the only one of its scene");
   check_refused("domain: {x: [0, 1]}\nfields: {u: vector(17)}\ndensity: 1\n", DVI_BAD_SIZE,
                 ":2:10:", "more than 16 components");
 }

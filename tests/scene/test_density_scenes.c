@@ -153,6 +153,21 @@ START_TEST(callbacks_agree_with_differences_with_several_fields)
 }
 END_TEST
 
+/* Parts without second derivatives are loads, and kinks but for their points. */
+START_TEST(parts_may_be_linear)
+{
+  static const char *const linear[] = {"density: u'^2/2 + cos(t)*x*u\n",
+                                       "density: u'^2/2 - d(u,x)^2/2 - abs(u)\n",
+                                       "density: u'^2/2 + u'^4 + sin(x)*u\n"};
+  for (int i = 0; i < KINDS; i++)
+    for (int k = 0; k < 3; k++) {
+      char text[TEXT_SIZE];
+      (void)snprintf(text, sizeof text, "space: %s\n%s%s%s", kinds[i], CIRCLE, SCALAR, linear[k]);
+      check_system(text);
+    }
+}
+END_TEST
+
 /* The kernels of a scene and callbacks written by hand differ by the order of roundings alone. */
 START_TEST(a_scene_is_the_field_that_a_program_declares)
 {
@@ -292,16 +307,14 @@ END_TEST
 /* The lowest energies of the oscillator are hbar sqrt(k/m) (n + 1/2), here with sqrt(k/m) = 1/2. */
 START_TEST(the_short_form_is_an_equation)
 {
-  const dvi_schroedinger *equation;
   double energy[2];
   (void)open_scene("domain: {x: [-12, 12]}\nspace: fem:degree=4,cells=40\nboundary: fixed\n"
                    "schroedinger: {potential: x^2/2, hbar: 0.5, mass: 4}\n");
-  ck_assert_int_eq(dvi_scene_schroedinger(scene, &equation), DVI_OK);
-  ck_assert_int_eq(dvi_schroedinger_modes(equation, 2, energy, NULL), DVI_OK);
+  ck_assert_int_eq(dvi_schroedinger_modes(dvi_scene_schroedinger(scene), 2, energy, NULL), DVI_OK);
   requires_near(energy[0], 0.125, 1e-6);
   requires_near(energy[1], 0.375, 1e-5);
   (void)open_scene(CIRCLE SCALAR SINE_GORDON "space: fem:degree=1,cells=4\n");
-  ck_assert_int_eq(dvi_scene_schroedinger(scene, &equation), DVI_UNSUPPORTED);
+  ck_assert_ptr_null(dvi_scene_schroedinger(scene));
 }
 END_TEST
 
@@ -339,6 +352,54 @@ START_TEST(unknowns_have_the_names_of_their_fields)
                    "boundary: fixed\n");
   ck_assert_str_eq(dvi_scene_coordinate(scene, 3), "psi_2_y");
   ck_assert_str_eq(dvi_scene_component(scene, 1), "psi_im");
+}
+END_TEST
+
+START_TEST(fields_are_known_as_they_are_declared)
+{
+  dvi_scene_declared field;
+  (void)open_scene("domain: {x: [0, 1], y: [0, 1]}\nspace: fem:degree=2,cells=4\n"
+                   "fields: {u: scalar, psi: complex, w: vector(3)}\nboundary: fixed\n"
+                   "density: u'^2/2 + dot(psi',psi')/2 + dot(w',w')/2\n");
+  ck_assert(dvi_scene_declared_of(scene, 1, &field));
+  ck_assert_str_eq(field.name, "psi");
+  ck_assert_int_eq(field.first, 1);
+  ck_assert_int_eq(field.components, 2);
+  ck_assert(field.is_complex);
+  ck_assert(dvi_scene_declared_of(scene, 2, &field));
+  ck_assert_int_eq(field.first, 3);
+  ck_assert_int_eq(field.components, 3);
+  ck_assert(!field.is_complex);
+  ck_assert(!dvi_scene_declared_of(scene, 3, &field));
+  ck_assert(!dvi_scene_declared_of(NULL, 0, &field));
+}
+END_TEST
+
+START_TEST(the_end_of_a_path_is_the_field_there)
+{
+  dvi_scene_end end;
+  (void)open_scene("domain: {x: [0, 1]}\nspace: fem:degree=1,cells=4\nfields: {u: scalar}\n"
+                   "boundary: fixed\ndensity: u'^2/2 - d(u,x)^2/2\nfinal: {u: x*(1 - x)}\n");
+  ck_assert(dvi_scene_end_of(scene, &end));
+  for (int i = 0; i < 3; i++) {
+    const double x = 0.25 * (i + 1);
+    ck_assert_double_eq_tol(end.q[i], x * (1 - x), 1e-16);
+    ck_assert(!end.free_q[i]);
+    ck_assert(end.free_p[i]);
+  }
+  (void)open_scene("domain: {x: [0, 1]}\nspace: fem:degree=1,cells=4\nfields: {u: scalar}\n"
+                   "boundary: fixed\ndensity: u'^2/2 - d(u,x)^2/2\n");
+  ck_assert(!dvi_scene_end_of(scene, &end));
+}
+END_TEST
+
+START_TEST(a_domain_has_a_mesh_for_what_is_shown)
+{
+  (void)open_scene("domain: {x: [0, 1], y: [0, 1]}\nspace: fem:degree=2,cells=4\n"
+                   "fields: {u: scalar}\nboundary: fixed\ndensity: u'^2/2\n");
+  const dvi_mesh *mesh = dvi_scene_mesh(scene);
+  ck_assert_int_eq(dvi_mesh_count(mesh, 0), 81);
+  ck_assert_ptr_eq(dvi_scene_mesh(scene), mesh);
 }
 END_TEST
 
@@ -453,6 +514,7 @@ SUITE(density_scenes)
   tcase_add_test(tests, callbacks_agree_with_differences_in_the_plane);
   tcase_add_test(tests, callbacks_agree_with_differences_on_meshes);
   tcase_add_test(tests, callbacks_agree_with_differences_with_several_fields);
+  tcase_add_test(tests, parts_may_be_linear);
   tcase_add_test(tests, a_scene_is_the_field_that_a_program_declares);
   tcase_add_test(tests, sine_gordon_waves_are_the_known_ones);
   tcase_add_test(tests, points_enough_keep_the_momentum_of_a_polynomial);
@@ -462,6 +524,9 @@ SUITE(density_scenes)
   tcase_add_test(tests, the_short_form_is_an_equation);
   tcase_add_test(tests, probes_are_values_derivatives_and_integrals);
   tcase_add_test(tests, unknowns_have_the_names_of_their_fields);
+  tcase_add_test(tests, fields_are_known_as_they_are_declared);
+  tcase_add_test(tests, the_end_of_a_path_is_the_field_there);
+  tcase_add_test(tests, a_domain_has_a_mesh_for_what_is_shown);
   tcase_add_test(tests, a_step_is_a_fraction_of_the_largest_stable_one);
   tcase_add_test(tests, conditions_hold_linear_fields);
   tcase_add_test(tests, a_static_state_needs_no_rates);

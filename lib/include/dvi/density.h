@@ -44,8 +44,8 @@ typedef struct dvi_density_part {
   dvi_density_kind kind;
   const dvi_jet *variable; /**< [variables] all different. Copied */
   int variables;
-  /** [pairs] the variables a >= b by which there are second derivatives. Default: all of them,
-   *  row by row of the lower triangle. Copied */
+  /** [pairs] the variables a >= b by which there are second derivatives. Default (NULL): all of
+   *  them, row by row of the lower triangle. Not NULL with 0 pairs: there are none. Copied */
   const int (*pair)[2];
   int pairs;
   /** l [count], its derivatives l_z [variables*count] and second ones l_zz [pairs*count], variable
@@ -114,7 +114,9 @@ const dvi_space *dvi_density_space(const dvi_density *density);
 int dvi_density_components(const dvi_density *density);
 
 /** Return the places [unknowns] in U [components*functions] of the coordinates, and their number.
- *  Coordinates of one function stand together. Owned by the field. */
+ *  Coordinates of one function stand together. They follow the order of the functions, but on a
+ *  circle of a sparse space that of 0, n-1, 1, n-2, .., where neighbours are near each other. Owned
+ *  by the field. */
 const int *dvi_density_unknowns(const dvi_density *density, int64_t *unknowns);
 
 /** Give the mass or the stiffness, the Hessian of the quadratic parts with a minus sign, of the

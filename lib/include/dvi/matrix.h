@@ -61,8 +61,7 @@ dvi_status dvi_matrix_copy(const dvi_matrix *matrix, const dvi_matrix_arrays *ar
 /** Compute eigenvalues of K x = lambda M x, the nearest to a shift, and their vectors, by Lanczos'
  *  method on the inverse of K - shift M (ARPACK; Lehoucq, Sorensen and Yang 1998).
  *
- *  @param      K, M        symmetric, by rows. M is positive definite, and K is positive
- *                          semidefinite unless there is a shift above 0
+ *  @param      K, M        symmetric, by rows. M is positive definite
  *  @param[out] eigenvalue  [count] ascending
  *  @param[out] vector      [count][rows] with x.M x = 1, and a positive sign of the first entry
  *                          that is at least half of the largest one. May be NULL

@@ -163,13 +163,20 @@ const double *dvi_moving_nodes(const dvi_moving *moving, int *cells);
  *  @retval (others)      as dvi_system_create */
 dvi_status dvi_moving_system(dvi_moving *moving, dvi_system **system);
 
+/** Give the terms from which dvi_moving_system makes a system, to add others to them. Their arrays
+ *  are the field's.
+ *
+ *  @retval DVI_SINGULAR  a component has no rate in the density */
+dvi_status dvi_moving_system_terms(dvi_moving *moving, dvi_system_terms *terms);
+
 /** Give coordinates q, velocities v, and momenta p at time 0 of a wave on the mesh of reference.
  *  Each of q, v and p may be NULL. With DVI_MOVING_EQUAL nodes go from there to arcs of one length,
  *  and the velocity of the first node alone is read, if it is an unknown.
  *
  *  @retval DVI_CALLBACK_FAILED  the wave failed
  *  @retval DVI_NOT_FINITE       the wave is not finite. dvi_last_error() names the node
- *  @retval DVI_SINGULAR         without mu, u is straight at a node, or nodes of a mesh are free
+ *  @retval DVI_SINGULAR         without mu, u is straight at a node, or nodes of a mesh are free, and
+ *                               v or p is wanted
  *  @retval DVI_NOT_CONVERGED    no arcs of one length were found
  *  @retval DVI_NO_MEMORY        there is no memory
  *  @retval (others)             as the callbacks fail */

@@ -37,7 +37,8 @@ typedef struct dvi_run_options {
   /** path of the checkpoint that is written when the run ends, for any reason. Default none */
   const char *checkpoint;
   long checkpoint_every; /**< checkpoint interval in steps (default: only at the end) */
-  /** the run ends after the step in which this becomes not 0. May be NULL */
+  /** the run ends after the step in which this becomes not 0, or at most 32 steps later where
+   *  verlet takes steps together. May be NULL */
   const volatile int *cancel;
 } dvi_run_options;
 

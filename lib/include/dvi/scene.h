@@ -8,6 +8,7 @@
 #include <dvi/density.h>
 #include <dvi/field.h>
 #include <dvi/march.h>
+#include <dvi/moving.h>
 #include <dvi/schroedinger.h>
 #include <dvi/sensitivity.h>
 #include <dvi/system.h>
@@ -56,8 +57,8 @@ typedef struct dvi_scene_range {
   const double *value; /**< [count] */
 } dvi_scene_range;
 
-/** The end of a scene's control problem. free_q and free_p are not 0 for the numbers that are free,
- *  as in dvi_control_options. */
+/** The end of a scene's control problem, or of a path of fields with a density. free_q and free_p
+ *  are not 0 for the numbers that are free, as in dvi_control_options. */
 typedef struct dvi_scene_end {
   const double *q, *p;
   const char *free_q, *free_p;
@@ -145,8 +146,13 @@ const dvi_system_terms *dvi_scene_terms(const dvi_scene *scene);
 const dvi_field *dvi_scene_field(const dvi_scene *scene);
 
 /** Return the field of a scene with a density, owned by the scene. Its coordinates are named u_1,
- *  u_2 and so on by its fields. NULL if the scene has no density. */
+ *  u_2 and so on by its fields. NULL if the scene has no density, or one on a mesh that moves. */
 const dvi_density *dvi_scene_density(const dvi_scene *scene);
+
+/** Return the field of a scene with a density on a mesh that moves (section moving), owned by the
+ *  scene. Its coordinates are named by the axis, x_1 and so on, and by its fields. NULL for other
+ *  scenes. */
+const dvi_moving *dvi_scene_moving(const dvi_scene *scene);
 
 /** Return the name of component i of the fields with a density ("u", "psi_re", "w_1"), owned by the
  *  scene. NULL if there is none. */
@@ -155,13 +161,14 @@ const char *dvi_scene_component(const dvi_scene *scene, int i);
 /** Give field i of a scene with a density, in the order of the file. Returns 0 if there is none. */
 int dvi_scene_declared_of(const dvi_scene *scene, int i, dvi_scene_declared *field);
 
-/** Give the equation of a scene with the section `schroedinger`, whose real and imaginary parts are
- *  the components of its field. Owned by the scene.
- *
- *  @retval DVI_UNSUPPORTED  the scene has no such section, or conditions on its boundary that are
- *                           neither fixed at 0 nor free without a flux
- *  @retval (others)         as dvi_schroedinger_create */
-dvi_status dvi_scene_schroedinger(const dvi_scene *scene, const dvi_schroedinger **equation);
+/** Return Schroedinger's equation of a scene with the section schroedinger, owned by the scene. The
+ *  first call makes it. NULL for other scenes, for those whose boundary has values, fluxes or
+ *  robin, or whose interaction depends on time, and if it cannot be made. */
+const dvi_schroedinger *dvi_scene_schroedinger(const dvi_scene *scene);
+
+/** Return the norm of the ground state that the section solve asks for (dvi_schroedinger_ground). 0
+ *  if it asks for none. */
+double dvi_scene_ground_norm(const dvi_scene *scene);
 
 /** Write what was found in a density and what was built of it, one fact a line: fields, parts by
  *  the summands of the expression, the space, the terms, and how well momenta can be kept. Cut off
@@ -172,7 +179,8 @@ void dvi_scene_density_explain(const dvi_scene *scene, char *text, size_t size);
 int dvi_scene_solve_options(const dvi_scene *scene, dvi_field_solve_options *options);
 
 /** Tell if a method is one of marches, for a scene of a field: those of dvi/march.h and yee, and
- *  for a density multisymplectic (dvi/multisymplectic.h).
+ *  for a density multisymplectic (dvi/multisymplectic.h) and, with the section schroedinger, those
+ *  of dvi/schroedinger.h.
  *
  *  @param method  its specification. NULL for the scene's own
  *  @return 1 if it is, 0 if it is not, or for a scene without a field */
@@ -205,8 +213,8 @@ const char *dvi_scene_march_refused(const dvi_scene *scene, const char *method,
  *  weight exact, and lumped with the weight trapezoid. 0, too, if the method is none of marches. */
 int dvi_scene_march_order(const dvi_scene *scene, const char *method);
 
-/** Measure the laws of a march of the scene's field (dvi_field_laws, dvi_multisymplectic_laws) that
- *  begins at random.
+/** Measure the laws of a march of the scene's field that begins at random: dvi_field_laws,
+ *  dvi_multisymplectic_laws, or the change of the "norm", from 1, of Schroedinger's equation.
  *
  *  @param      options  with a method
  *  @param[out] law      [DVI_LAWS_MAX]
@@ -286,7 +294,7 @@ const dvi_controls *dvi_scene_controls(const dvi_scene *scene);
 /** Return the name of control i. NULL if i is out of range. Owned by the scene. */
 const char *dvi_scene_control(const dvi_scene *scene, int i);
 
-/** Give the end of the scene's control problem, owned by the scene. Returns 0 if there is none. */
+/** Give the end that the scene has, owned by the scene. Returns 0 if there is none. */
 int dvi_scene_end_of(const dvi_scene *scene, dvi_scene_end *end);
 
 /** Derive the scene by its parameters, for dvi_sensitivity_create. Parameter k is that of

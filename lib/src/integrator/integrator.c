@@ -318,6 +318,35 @@ dvi_status dvi__integrator_smooth_step(dvi_integrator *I, double h)
   return DVI_OK;
 }
 
+/* Nothing but the method may have a part in these steps. */
+static int can_step_together(const dvi_integrator *I, double h)
+{
+  return I->stepper.method->pass != NULL && I->monitored == NULL && I->balances == 0 &&
+         I->system->dynamics->constraint == NULL && !dvi__hits_divide(I) &&
+         !dvi_integrator_chooses_steps(I) && dvi__check_step(I->now.t, h) == DVI_OK &&
+         dvi__stepper_check_step(&I->stepper, h) == DVI_OK;
+}
+
+long dvi__integrator_steps(dvi_integrator *I, double h, long count)
+{
+  enum { MOST = 32 }; /* more would hardly save time */
+  double length[MOST];
+  const int steps = count < MOST ? (int)count : MOST;
+  if (!can_step_together(I, h)) return 0;
+  for (int i = 0; i < steps; i++) length[i] = h;
+  exchange_memory(I);
+  I->next.density = I->now.density;
+  I->next.side = I->now.side;
+  if (!I->stepper.method->pass(&I->stepper, &I->now, I->memory_before, &I->next, length, steps) ||
+      !isfinite(I->next.t) || I->next.t + h == I->next.t) {
+    exchange_memory(I);
+    return 0;
+  }
+  accept_step(I, h * steps);
+  I->counters.steps += steps - 1;
+  return steps;
+}
+
 dvi_status dvi__integrator_step_exactly(dvi_integrator *I, double h)
 {
   I->stepper.exact = 1;
@@ -408,8 +437,7 @@ void dvi__guess_velocity(int n, const double *q, const double *last_q, const dou
   for (int i = 0; i < n; i++) v[i] = last_h != 0 ? (q[i] - last_q[i]) / last_h : last_p[i];
 }
 
-/* Evaluate the velocity of `now` or `last`. */
-static dvi_status state_velocity(dvi_integrator *I, const dvi__state *state, double *v)
+dvi_status dvi__state_velocity(dvi_integrator *I, const dvi__state *state, double *v)
 {
   if (I->system->dynamics->searches_velocity)
     dvi__guess_velocity(I->system->n, I->now.q, I->last.q, I->last.p, I->last_h, v);
@@ -418,7 +446,7 @@ static dvi_status state_velocity(dvi_integrator *I, const dvi__state *state, dou
 
 dvi_status dvi__integrator_velocity(dvi_integrator *I, double *v)
 {
-  return state_velocity(I, &I->now, v);
+  return dvi__state_velocity(I, &I->now, v);
 }
 
 dvi_status dvi_integrator_invariants(dvi_integrator *I, double *value)
@@ -429,7 +457,7 @@ dvi_status dvi_integrator_invariants(dvi_integrator *I, double *value)
     return dvi__fail(
         DVI_BAD_STATE,
         "invariants: the integrator has no state yet; call dvi_integrator_start first");
-  DVI_TRY(state_velocity(I, &I->now, I->v));
+  DVI_TRY(dvi__state_velocity(I, &I->now, I->v));
   return dvi__invariants(I->evaluator, I->now.t, I->now.q, I->v, I->now.p, value);
 }
 
@@ -443,7 +471,7 @@ dvi_status dvi_integrator_invariant(dvi_integrator *I, int i, double *value)
   if (i < 0 || i >= dvi_system_invariant_count(I->system))
     return dvi__fail(DVI_BAD_ARGUMENT, "invariant: there is none of index %d; there are %d", i,
                      dvi_system_invariant_count(I->system));
-  if (i == 0) DVI_TRY(state_velocity(I, &I->now, I->v));
+  if (i == 0) DVI_TRY(dvi__state_velocity(I, &I->now, I->v));
   return dvi__invariant(I->evaluator, I->now.t, I->now.q, I->v, I->now.p, i, value);
 }
 
@@ -472,7 +500,7 @@ double dvi_integrator_supplied(const dvi_integrator *I, int i)
 
 dvi_status dvi_integrator_balance(dvi_integrator *I, int i, double *defect)
 {
-  double now;
+  double now = 0;
   if (I == NULL || defect == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "balance: an argument is NULL");
   if (I->balances == 0)
@@ -512,7 +540,7 @@ dvi_status dvi_integrator_reactions(dvi_integrator *I, double *lambda)
   if (!I->started)
     return dvi__fail(DVI_BAD_STATE,
                      "reactions: the integrator has no state yet; call dvi_integrator_start first");
-  DVI_TRY(state_velocity(I, &I->now, I->v));
+  DVI_TRY(dvi__state_velocity(I, &I->now, I->v));
   return I->system->dynamics->reactions(I->evaluator, I->now.t, I->now.q, I->v, lambda);
 }
 
@@ -533,67 +561,4 @@ size_t dvi_integrator_explain(const dvi_integrator *integrator, char *text, size
   integrator->stepper.method->explain(&integrator->stepper, &out);
   dvi__explain_dependent_rows(integrator, &out);
   return out.length;
-}
-
-/* ---- dense output ---- */
-
-void dvi__cubic_point(int n, const dvi__cubic *c, double tau, double *q, double *v)
-{
-  const double h = c->h, a = (1 + 2 * tau) * (1 - tau) * (1 - tau), b = tau * (1 - tau) * (1 - tau);
-  const double e = tau * tau * (3 - 2 * tau), d = tau * tau * (tau - 1);
-  const double a1 = h != 0 ? 6 * tau * (tau - 1) / h : 0, b1 = (1 - tau) * (1 - 3 * tau),
-               d1 = tau * (3 * tau - 2);
-  for (int i = 0; i < n; i++) {
-    const double q0 = c->q0[i], q1 = c->q1[i], v0 = c->v0[i], v1 = c->v1[i];
-    if (q != NULL) q[i] = a * q0 + h * b * v0 + e * q1 + h * d * v1;
-    if (v != NULL) v[i] = a1 * (q0 - q1) + b1 * v0 + d1 * v1;
-  }
-}
-
-/* Evaluate Hermite's cubic through both ends of the last step. */
-static dvi_status hermite_cubic(dvi_integrator *I, double tau, double *q, double *v)
-{
-  DVI_TRY(state_velocity(I, &I->last, I->last_v));
-  DVI_TRY(state_velocity(I, &I->now, I->v));
-  const dvi__cubic cubic = {I->last_h, I->last.q, I->last_v, I->now.q, I->v};
-  dvi__cubic_point(I->system->n, &cubic, tau, q, v);
-  return DVI_OK;
-}
-
-dvi_status dvi__integrator_path(dvi_integrator *I, double tau, double *q, double *v)
-{
-  if (I->stepper.method->path == NULL) return hermite_cubic(I, tau, q, v);
-  I->stepper.method->path(&I->stepper, I->last.q, I->last_h, tau, q, v);
-  const size_t n = (size_t)I->system->n, nv = (size_t)I->system->nv;
-  if ((q == NULL || dvi__first_not_finite(n, q) < 0) &&
-      (v == NULL || dvi__first_not_finite(nv, v) < 0))
-    return DVI_OK;
-  return dvi__fail(DVI_NOT_FINITE, "interpolate: the path is not finite at t = %.17g",
-                   I->last.t + tau * I->last_h);
-}
-
-dvi_status dvi_integrator_interpolate(dvi_integrator *I, double t, double *q, double *v)
-{
-  if (I == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "interpolate: the integrator is NULL");
-  if (dvi_integrator_last_step(I) == 0)
-    return dvi__fail(DVI_BAD_STATE, "interpolate: no step was taken yet");
-  const double first = dvi_integrator_hit_count(I) > 0 ? dvi__hits_first_time(I) : I->last.t;
-  /* Use the rounded ends, because late in a run t0 + h is rounded by a large part of h. */
-  const double whole = (t - first) / (I->now.t - first), rounding = 1e-12;
-  if (!(whole >= -rounding && whole <= 1 + rounding))
-    return dvi__fail(DVI_BAD_ARGUMENT,
-                     "interpolate: t = %.17g is outside of the last step, %.17g to %.17g", t, first,
-                     I->now.t);
-  if (dvi__hits_before(I, t)) return dvi__hits_path(I, t, q, v);
-  const double tau = (t - I->last.t) / (I->now.t - I->last.t);
-  if (I->stepper.method->path == NULL && I->system->dynamics->on_manifold)
-    return dvi__fail(
-        DVI_UNSUPPORTED,
-        "interpolate: %s has no path between its steps, and a cubic would leave the rotations; "
-        "lie-verlet and lie-galerkin have one",
-        I->stepper.method->name);
-  if (I->stepper.method->path != NULL && I->monitored != NULL &&
-      I->monitored->pacing == DVI_TIME_TRANSFORM)
-    return dvi__monitored_time_path(I, tau, q, v);
-  return dvi__integrator_path(I, tau, q, v);
 }

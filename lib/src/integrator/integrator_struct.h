@@ -64,6 +64,11 @@ dvi_status dvi__check_step(double t, double h);
 
 /* Take one step of the method, without a look at contacts, and take it back. */
 dvi_status dvi__integrator_smooth_step(dvi_integrator *integrator, double h);
+
+/* Take up to `count` steps in one pass of the method, with the bits of as many single steps.
+ * Returns their number, or 0 if nothing changed, because the method has no such pass or a step
+ * fails. They count as one last step, which is not to be taken back. */
+long dvi__integrator_steps(dvi_integrator *integrator, double h, long count);
 void dvi__integrator_smooth_back(dvi_integrator *integrator);
 
 /* Evaluate q [nq] and v [nv] at tau in [0,1] of the last smooth step. Either may be NULL. */
@@ -80,6 +85,9 @@ void dvi__cubic_point(int n, const dvi__cubic *cubic, double tau, double *q, dou
 
 /* Evaluate the velocity [nv] of the present state. */
 dvi_status dvi__integrator_velocity(dvi_integrator *integrator, double *v);
+
+/* Evaluate the velocity [n] of `now` or `last`. */
+dvi_status dvi__state_velocity(dvi_integrator *integrator, const dvi__state *state, double *v);
 
 /* Begin anew at the present state, with its velocity v [nv], as at a start. The second function
  * does so after a change of the state on the way, or of its equations. */

@@ -46,6 +46,11 @@ static dvi_status mechanics_advance(void *of, double h, double t_end, double tol
   return dvi__integrator_step_exactly(I, left);
 }
 
+static long mechanics_advance_together(void *of, double h, long count)
+{
+  return dvi__integrator_steps(((const mechanics *)of)->integrator, h, count);
+}
+
 static void mechanics_take_back(void *of)
 {
   dvi__integrator_take_back(((const mechanics *)of)->integrator);
@@ -155,6 +160,7 @@ static dvi_status mechanics_run(mechanics *m, dvi_run_report *report)
                                 .left = mechanics_time_left,
                                 .steps = mechanics_steps,
                                 .advance = mechanics_advance,
+                                .advance_together = mechanics_advance_together,
                                 .take_back = mechanics_take_back,
                                 .reject = mechanics_reject,
                                 .event = mechanics_event,

@@ -48,6 +48,10 @@ typedef struct dvi__marcher {
 
   /* Write the state to a file. */
   dvi_status (*save)(const void *of, const char *path);
+
+  /* Take up to `count` steps of h in one pass through memory, and return their number, or 0 if
+   * that is not possible. An ordinary step of h must follow. NULL if it never is possible. */
+  long (*advance_together)(void *of, double h, long count);
 } dvi__marcher;
 
 typedef struct dvi__march_options {

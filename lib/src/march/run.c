@@ -1,5 +1,6 @@
 /* The loop of a run: steps, events, observers, checkpoints (dvi/run.h). */
 #include <float.h>
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 
@@ -138,12 +139,36 @@ static dvi_status march_one_step(march *m, double h)
   return DVI_OK;
 }
 
+/* Return the steps that may be taken before one after which something is looked at, each as long as
+ * h. */
+static long steps_unobserved(const march *m, double h)
+{
+  const dvi__march_options *options = m->options;
+  const long every = options->every > 0 ? options->every : 1, done = m->report->steps;
+  const double left = floor(m->marcher->left(m->of, options->t_end) / h) - 2;
+  long count = left < INT_MAX ? (long)left : INT_MAX;
+  if (options->event_count > 0 || options->chooses_steps || h != options->h) return 0;
+  if (m->marcher->observe != NULL && every - done % every < count) count = every - done % every;
+  if (options->checkpoint != NULL && options->checkpoint_every > 0 &&
+      options->checkpoint_every - done % options->checkpoint_every < count)
+    count = options->checkpoint_every - done % options->checkpoint_every;
+  return count - 1;
+}
+
+static void march_together(march *m, double h)
+{
+  const long count = m->marcher->advance_together != NULL ? steps_unobserved(m, h) : 0;
+  if (count > 1) m->report->steps += m->marcher->advance_together(m->of, h, count);
+}
+
 static dvi_status march_all_steps(march *m)
 {
   const double t_end = m->options->t_end;
   DVI_TRY(march_observe(m));
-  for (double h = next_step(m, t_end); h != 0 && !m->stop; h = next_step(m, t_end))
+  for (double h = next_step(m, t_end); h != 0 && !m->stop; h = next_step(m, t_end)) {
+    march_together(m, h);
     DVI_TRY(march_one_step(m, h));
+  }
   return DVI_OK;
 }
 

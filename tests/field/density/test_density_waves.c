@@ -200,6 +200,27 @@ START_TEST(kinks_have_known_modes)
 }
 END_TEST
 
+/* About 0 the modes between fixed ends have the eigenvalues (k pi/8)^2 - 1, two of them below 0.
+ * The numbers of unknowns are those of full matrices and of Lanczos' method. */
+START_TEST(unstable_states_have_modes_that_grow)
+{
+  static const char *const kinds[] = {"fem:degree=4,cells=16", "fem:degree=4,cells=60"};
+  const dvi_density_part parts[] = {kinetic_part, elastic_part, double_well_part};
+  const dvi_density_condition ends = {.part = "boundary", .kind = DVI_FIXED};
+  const dvi_modes_options four = {.size = sizeof four, .count = 4};
+  for (int i = 0; i < 2; i++) {
+    density_field field = make_density(make_density_space(kinds[i], 1, 0, 8, 0), parts, 3, &ends,
+                                       1);
+    double eigenvalue[4];
+    ck_assert_msg(dvi_density_modes(field.density, &four, NULL, eigenvalue, NULL) == DVI_OK, "%s",
+                  dvi_last_error());
+    for (int k = 0; k < 4; k++)
+      ck_assert_double_eq_tol(eigenvalue[k], pow((k + 1) * acos(-1.0) / 8, 2) - 1, 1e-7);
+    end_density(&field);
+  }
+}
+END_TEST
+
 START_TEST(singular_static_problems_are_refused)
 {
   density_field field = make_density(make_density_space("fem:degree=1,cells=8", 1, 0, 1, 0),
@@ -459,6 +480,7 @@ SUITE(density_waves)
   tcase_add_test(tests, elements_have_their_orders_in_space);
   tcase_add_test(tests, static_kinks_have_known_energies);
   tcase_add_test(tests, kinks_have_known_modes);
+  tcase_add_test(tests, unstable_states_have_modes_that_grow);
   tcase_add_test(tests, singular_static_problems_are_refused);
   tcase_add_test(tests, breathers_have_the_errors_of_imex_steps);
   tcase_add_test(tests, general_parts_agree_with_differences);

@@ -376,12 +376,13 @@ END_TEST
 START_TEST(nodes_without_mass_are_refused)
 {
   dvi_moving_terms terms = ring();
-  double rate = 1, q[16];
+  double rate = 1, q[16], p[16];
   terms.mu = 0;
   dvi_moving *moving = create(&terms);
-  ck_assert_int_eq(dvi_moving_start(moving, tilted, &rate, q, NULL, NULL), DVI_SINGULAR);
+  ck_assert_int_eq(dvi_moving_start(moving, tilted, &rate, q, NULL, p), DVI_SINGULAR);
   check_words("u is straight at node 0");
   check_words("give mu > 0, or prescribe the nodes");
+  ck_assert_int_eq(dvi_moving_start(moving, tilted, &rate, q, NULL, NULL), DVI_OK);
   dvi_moving_destroy(&moving);
 }
 END_TEST

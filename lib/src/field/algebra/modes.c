@@ -143,13 +143,15 @@ static dvi_status shift_matrix(const dvi__pencil *pencil, double shift, dvi__csr
   return status;
 }
 
+/* Where there are eigenvalues below the shift, as of unstable states, the matrix is not definite. */
 static dvi_status create_inverse(const dvi__pencil *pencil, double shift, dvi__definite *inverse)
 {
   dvi__csr shifted;
   DVI_TRY(shift_matrix(pencil, shift, &shifted));
   const dvi_matrix view = dvi__csr_view(&shifted, 1);
-  const dvi_status status = shift > 0 ? dvi__regular_create(&view, inverse)
-                                      : dvi__definite_create(&view, pencil->dimension, inverse);
+  dvi_status status = shift > 0 ? DVI_SINGULAR
+                                : dvi__definite_create(&view, pencil->dimension, inverse);
+  if (status == DVI_SINGULAR) status = dvi__regular_create(&view, inverse);
   dvi__csr_clear(&shifted);
   return status;
 }

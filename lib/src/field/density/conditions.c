@@ -5,6 +5,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "field/density/density.h"
+#include "field/space/kind.h"
 
 static dvi_status no_memory(void)
 {
@@ -215,12 +216,26 @@ dvi_status dvi__density_fix(dvi_density *density, const dvi_density_terms *terms
   return dvi__density_number(density);
 }
 
+int dvi__density_is_circle(const dvi_density *density)
+{
+  const dvi_space *space = density->space;
+  return !density->is_fourier && space->lines == 1 && space->line[0].periodic;
+}
+
+/* Return function i of the numbering. On a circle functions are numbered from both ends in turn, 0,
+ * n-1, 1, n-2, .., so that neighbours have near numbers. */
+static int64_t numbered_function(const dvi_density *density, int64_t i)
+{
+  if (!dvi__density_is_circle(density)) return i;
+  return i % 2 == 0 ? i / 2 : density->functions - 1 - i / 2;
+}
+
 dvi_status dvi__density_number(dvi_density *density)
 {
   int count = 0;
   for (int64_t i = 0; i < density->functions; i++)
     for (int c = 0; c < density->components; c++) {
-      const int64_t place = c * density->functions + i;
+      const int64_t place = c * density->functions + numbered_function(density, i);
       if (density->number[place] < 0) continue;
       density->unknown[count] = (int)place;
       density->number[place] = count++;

@@ -10,7 +10,7 @@
 
 enum {
   DVI__MODES_WITH_HESSIAN = 300, /* unknowns of a Fourier field whose Hessian is declared */
-  DVI__BLOCK_MOST = 64           /* points of a call of a sparse field's callback */
+  DVI__BLOCK_MOST = 256          /* points of a call of a sparse field's callback */
 };
 
 /* A variable at the points, a sparse matrix of the coordinates: z = value.q + fixed + moving.G(t).
@@ -38,13 +38,29 @@ typedef struct dvi__slots {
   int *qq, *qv, *vv;
 } dvi__slots;
 
+/* Points that are coordinates, in a part whose points have one at most. From `first` on the only
+ * variable at point k is coordinate k - shift. `weight` is that of all these points, or 0 if they
+ * differ. */
+typedef struct dvi__own_points {
+  int64_t first, shift;
+  double weight;
+} dvi__own_points;
+
+/* Rows of a matrix that repeat. Rows first+period to last-1 have the entries of the row `period`
+ * before, shifted by as much. */
+typedef struct dvi__repeated_rows {
+  int64_t first, last;
+  int period;
+} dvi__repeated_rows;
+
 /* A condition of the boundary that adds g u - a u^2/2 to l. */
 typedef struct dvi__boundary_term {
   dvi_density_condition given;
   int is_moving;
 } dvi__boundary_term;
 
-/* A part, with its points. Those of the domain are the space's. */
+/* A part, with its points. Those of the domain are the space's, or taken from them
+ * (field/density/points.c). */
 typedef struct dvi__density_part {
   char *name;
   dvi_density_part given; /* with copies of its arrays. The name is the one above */
@@ -54,6 +70,7 @@ typedef struct dvi__density_part {
   double *own;              /* x and weight, where they are not the space's */
   dvi__csr trace;           /* [points x functions] values on a boundary. Else without rows */
   dvi__jet_rows *rows;      /* [variables] NULL for Fourier spaces */
+  dvi__own_points own_points;
   dvi__point_groups group;
   dvi__slots slots;
   int64_t *low, *high; /* [unknowns] points of coordinate i and later, and i and earlier */
@@ -132,6 +149,8 @@ struct dvi_density {
   dvi__csr mass, stiffness;
   double mass_scalar;
   int mass_is_diagonal;
+  dvi__repeated_rows repeated; /* of the stiffness */
+  int has_load;
   double *load; /* [unknowns] minus the gradient of the quadratic parts at 0, without those in t */
   double rest;  /* value of the quadratic parts at 0 */
   int has_rest; /* K and the load are not all of a Fourier field's quadratic parts */
@@ -160,9 +179,21 @@ struct dvi_density {
 dvi_status dvi__density_copy_parts(dvi_density *density, const dvi_density_terms *terms);
 void dvi__density_part_clear(dvi__density_part *part);
 
+/* Return the matrix that gives variable a of a sparse field's part. */
+static inline const dvi__csr *dvi__part_operator(const dvi__density_part *part, int a)
+{
+  return part->trace.rows > 0 ? &part->trace : &part->transform[a].matrix;
+}
+
 /* Make what maps coordinates to the variables of a part. Unbinding takes it away. */
 dvi_status dvi__density_bind(dvi_density *density, dvi__density_part *part);
 void dvi__density_unbind(dvi__density_part *part);
+
+/* Put the points of a part into the order of their first coordinates, and make one point of those
+ * that are the same. `row` [points] has the rows of the operators at the points. It is NULL if the
+ * points are the space's, in its order. */
+dvi_status dvi__density_order_points(const dvi_density *density, dvi__density_part *part,
+                                     int64_t **row);
 
 /* Refuse parts that are not of their kinds, by derivatives at some points. */
 dvi_status dvi__density_check_kinds(dvi_density *density);
@@ -170,6 +201,10 @@ dvi_status dvi__density_check_kinds(dvi_density *density);
 /* Find what conditions fix, and add parts for fluxes. */
 dvi_status dvi__density_fix(dvi_density *density, const dvi_density_terms *terms);
 dvi_status dvi__density_number(dvi_density *density);
+
+/* Tell if the space is sparse and its domain is one periodic axis. */
+int dvi__density_is_circle(const dvi_density *density);
+
 dvi_status dvi__density_check_datum(const dvi_density *density,
                                     const dvi_density_condition *condition, int failed,
                                     int64_t count, const double *x, const double *datum);
@@ -212,6 +247,12 @@ void dvi__density_take(const dvi_density *density, const double *U, double *q);
 dvi_status dvi__density_make_mass(dvi_density *density);
 dvi_status dvi__density_make_stiffness(dvi_density *density);
 dvi_status dvi__density_find_fastest(dvi_density *density);
+
+/* Find rows that repeat, and give y [last-first] = A q for some rows. The bits are those of sums
+ * over the entries of each row. */
+void dvi__find_repeated_rows(const dvi__csr *A, dvi__repeated_rows *repeated);
+void dvi__multiply_rows(const dvi__csr *A, const dvi__repeated_rows *repeated, int64_t first,
+                        int64_t last, const double *q, double *y);
 
 /* Make the matrix of the mean coefficients of a Fourier field's kinetic or quadratic parts, and
  * tell whether the coefficients are constant. */

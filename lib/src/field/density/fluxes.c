@@ -74,7 +74,7 @@ static int64_t points_of_side(const dvi_space *space, int across)
 static double point_of_line(const dvi__line *line, int64_t i, double *weight)
 {
   const int64_t cell = i / line->cell_points, k = i % line->cell_points;
-  const double from = line->node[cell], length = line->node[cell + 1] - from;
+  const double from = line->node[cell], length = dvi__cell_width(line, cell);
   *weight *= length * line->weight[k];
   return from + length * line->place[k];
 }

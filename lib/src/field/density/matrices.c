@@ -224,8 +224,11 @@ dvi_status dvi__density_make_stiffness(dvi_density *density)
   if (status == DVI_OK) make_symmetric(&density->stiffness);
   if (status == DVI_OK) dvi__csr_drop_zeros(&density->stiffness);
   if (status == DVI_OK) status = check_finite(density, &density->stiffness, "stiffness");
-  for (int64_t i = 0; i < n && status == DVI_OK; i++)
+  for (int64_t i = 0; i < n && status == DVI_OK; i++) {
+    density->has_load |= density->load[i] != 0;
     if (!isfinite(density->load[i])) status = refuse_entry(density, i, density->load[i], "load");
+  }
+  if (status == DVI_OK) dvi__find_repeated_rows(&density->stiffness, &density->repeated);
   return status;
 }
 

@@ -37,7 +37,7 @@ static dvi_status check_variables(const dvi_density *density, const dvi_density_
 
 static dvi_status check_pairs(const dvi_density_part *part, const char *name)
 {
-  if (part->pairs < 0 || (part->pairs > 0) != (part->pair != NULL))
+  if (part->pairs < 0 || (part->pairs > 0 && part->pair == NULL))
     return dvi__fail(DVI_BAD_ARGUMENT,
                      "density: part '%s' has %d pairs: give them with their count, or none", name,
                      part->pairs);
@@ -191,8 +191,9 @@ static dvi_status add_fixed(int64_t points, int64_t k, double value, dvi__jet_ro
 /* Take the rows of a component apart into coordinates, values that move, and values that do not.
  * Rates have no part of the latter. */
 static dvi_status split_rows(const dvi_density *density, dvi__density_part *part, int a,
-                             const dvi__csr *B)
+                             const int64_t *row)
 {
+  const dvi__csr *B = dvi__part_operator(part, a);
   const dvi_jet *jet = part->given.variable + a;
   const int64_t shift = jet->component * density->functions;
   dvi__jet_rows *rows = part->rows + a;
@@ -203,7 +204,8 @@ static dvi_status split_rows(const dvi_density *density, dvi__density_part *part
   if (moving > 0) DVI_TRY(dvi__csr_allocate(part->points, density->moving, moving, &rows->moving));
   moving = 0;
   for (int64_t k = 0; k < part->points; k++) {
-    for (int64_t e = B->start[k]; e < B->start[k + 1]; e++) {
+    const int64_t r = row != NULL ? row[k] : k;
+    for (int64_t e = B->start[r]; e < B->start[r + 1]; e++) {
       const int64_t place = shift + B->column[e];
       const int number = density->number[place];
       if (B->value[e] == 0) continue;
@@ -221,6 +223,30 @@ static dvi_status split_rows(const dvi_density *density, dvi__density_part *part
     if (rows->moving.rows > 0) rows->moving.start[k + 1] = moving;
   }
   return DVI_OK;
+}
+
+/* Find the last points that are coordinates, while rows still have the coordinates' numbers. Where
+ * most of them have one weight, those before that have another one are left out. */
+static void find_own_points(dvi__density_part *part)
+{
+  const dvi__jet_rows *rows = part->rows;
+  dvi__own_points *own = &part->own_points;
+  *own = (dvi__own_points){.first = part->points};
+  if (part->given.variables != 1 || rows->moving.rows > 0) return;
+  if (rows->start[part->points] > part->points) return; /* not in the order of the coordinates */
+  for (int64_t k = part->points - 1; k >= 0; k--) {
+    const int64_t e = rows->start[k];
+    if (rows->start[k + 1] - e != 1 || rows->value[e] != 1) return;
+    if (rows->fixed != NULL && rows->fixed[k] != 0) return;
+    if (k < part->points - 1 && rows->local[e] != k - own->shift) return;
+    if (k == part->points - 1) own->weight = part->weight[k];
+    if (own->weight != 0 && part->weight[k] != own->weight) {
+      if (k < part->points / 2) return;
+      own->weight = 0;
+    }
+    own->shift = k - rows->local[e];
+    own->first = k;
+  }
 }
 
 /* ---- groups ---- */
@@ -371,12 +397,16 @@ static dvi_status find_points_of_ranges(const dvi_density *density, dvi__density
 
 dvi_status dvi__density_bind(dvi_density *density, dvi__density_part *part)
 {
+  int64_t *row = NULL;
   if (density->is_fourier) return DVI_OK;
   part->rows = DVI_NEW(dvi__jet_rows, part->given.variables);
   if (part->rows == NULL) return no_memory("rows");
-  for (int a = 0; a < part->given.variables; a++)
-    DVI_TRY(split_rows(density, part, a,
-                       part->trace.rows > 0 ? &part->trace : &part->transform[a].matrix));
+  dvi_status status = dvi__density_order_points(density, part, &row);
+  for (int a = 0; a < part->given.variables && status == DVI_OK; a++)
+    status = split_rows(density, part, a, row);
+  dvi__release(row);
+  DVI_TRY(status);
+  find_own_points(part);
   DVI_TRY(make_groups(part));
   return find_points_of_ranges(density, part);
 }

@@ -2,11 +2,13 @@
  *
  *     z = B q,    sum_k w_k l(x_k, z_k),    B^T (w l_z),    B^T (w l_zz) B.
  *
- * The callback gets blocks of points on the stack. An entry of a derivative adds the points in
+ * The callback gets blocks of points on the stack, or coordinates in their place if they are the
+ * variables at the points. An entry of a derivative adds the points in
  * their order, so that its bits depend neither on blocks nor on the range of the call. */
 #include <string.h>
 
 #include "field/density/density.h"
+#include "num/simd/wide.h"
 
 enum { ROOM = 8192 /* numbers of a block */ };
 
@@ -18,9 +20,10 @@ typedef struct block {
   const double *G, *G_rate, *G_second; /* values that move, and their derivatives in time */
   int64_t first;
   int count;
-  double weight[DVI__BLOCK_MOST]; /* with the integral's sign */
-  double *room;                   /* [ROOM] */
-  double *x, *z, *l, *l_z, *l_zz;
+  double *weight; /* [DVI__BLOCK_MOST] with the integral's sign */
+  double *room;   /* [ROOM] */
+  const double *x;
+  double *z, *l, *l_z, *l_zz;
 } block;
 
 /* ---- before the call ---- */
@@ -38,8 +41,8 @@ static void lay_out(block *b, const dvi__density_sums *s)
   const dvi_density_part *given = &b->part->given;
   const int dimension = b->integral->density->dimension;
   const int has_first = s->q != NULL || s->v != NULL || s->rate != NULL;
-  b->x = b->room;
-  b->z = b->x + dimension * b->count;
+  b->x = dimension == 1 ? b->part->x + b->first : b->room;
+  b->z = b->room + dimension * b->count;
   b->l = b->z + given->variables * b->count;
   b->l_z = b->l + b->count;
   b->l_zz = b->l_z + given->variables * b->count;
@@ -48,13 +51,17 @@ static void lay_out(block *b, const dvi__density_sums *s)
   if (s->qq == NULL && s->qv == NULL && s->vv == NULL) b->l_zz = NULL;
 }
 
-static void fill_points(block *b)
+/* The places of an interval are the part's. */
+static void fill_places(const block *b)
 {
-  const int64_t points = b->part->points;
   const int dimension = b->integral->density->dimension;
-  for (int d = 0; d < dimension; d++)
-    memcpy(b->x + d * b->count, b->part->x + d * points + b->first,
+  for (int d = 0; d < dimension && dimension > 1; d++)
+    memcpy(b->room + d * b->count, b->part->x + d * b->part->points + b->first,
            (size_t)b->count * sizeof(double));
+}
+
+static void fill_weights(const block *b)
+{
   for (int k = 0; k < b->count; k++)
     b->weight[k] = b->integral->sign * b->part->weight[b->first + k];
 }
@@ -170,13 +177,54 @@ static int add_rate(const block *b, double *rate)
   return 0;
 }
 
+/* ---- points that are coordinates ---- */
+
+/* Return the coordinates at the block's points, or NULL if they are not there in a row or other
+ * results are wanted. */
+static const double *own_coordinates(const block *b, const dvi__density_sums *s)
+{
+  const dvi__own_points *own = &b->part->own_points;
+  const double *from = b->part->given.variable[0].rate ? b->at->v : b->at->q;
+  const int is_more = s->qq != NULL || s->qv != NULL || s->vv != NULL || s->rate != NULL;
+  return b->first < own->first || from == NULL || is_more ? NULL : from + (b->first - own->shift);
+}
+
+WIDE static void add_scaled(int count, double weight, const double *restrict l_z,
+                            double *restrict derivative)
+{
+  for (int k = 0; k < count; k++) derivative[k] += weight * l_z[k];
+}
+
+/* Give what the general functions would give, to the last bit. */
+static int sum_own_points(block *b, const double *z, const dvi__density_sums *s)
+{
+  const dvi_density_part *given = &b->part->given;
+  const dvi__own_points *own = &b->part->own_points;
+  double *derivative = given->variable[0].rate ? s->v : s->q;
+  fill_places(b);
+  if (own->weight == 0 || s->value != NULL) fill_weights(b);
+  const int failed = given->density(b->count, b->at->t, b->x, z, b->l, b->l_z, NULL, given->user);
+  if (failed != 0) return failed;
+  if (s->value != NULL) add_value(b, s->value);
+  if (derivative == NULL) return 0;
+  derivative += b->first - own->shift - b->at->first;
+  if (own->weight != 0)
+    add_scaled(b->count, b->integral->sign * own->weight, b->l_z, derivative);
+  else
+    for (int k = 0; k < b->count; k++) derivative[k] += b->weight[k] * b->l_z[k];
+  return 0;
+}
+
 /* ---- all ---- */
 
 static int sum_block(block *b, const dvi__density_sums *s)
 {
   const dvi_density_part *given = &b->part->given;
+  const double *own = own_coordinates(b, s);
   lay_out(b, s);
-  fill_points(b);
+  if (own != NULL) return sum_own_points(b, own, s);
+  fill_places(b);
+  fill_weights(b);
   for (int a = 0; a < given->variables; a++) gather_variable(b, a);
   const int failed = given->density(b->count, b->at->t, b->x, b->z, b->l, b->l_z, b->l_zz,
                                     given->user);
@@ -193,8 +241,8 @@ static int sum_block(block *b, const dvi__density_sums *s)
 int dvi__part_sum(const dvi__integral *integral, const dvi__density_part *part,
                   const dvi__density_point *at, const double *room, const dvi__density_sums *sums)
 {
-  double stack[ROOM]; /* written before it is read, block by block */
-  block b = {.integral = integral, .part = part, .at = at, .room = stack};
+  double stack[ROOM], weight[DVI__BLOCK_MOST]; /* written before they are read */
+  block b = {.integral = integral, .part = part, .at = at, .weight = weight, .room = stack};
   if (room != NULL) {
     b.G = room;
     b.G_second = room + 2 * integral->density->moving;
@@ -203,10 +251,11 @@ int dvi__part_sum(const dvi__integral *integral, const dvi__density_part *part,
   const int is_whole = at->first == 0 && at->last == integral->density->unknowns;
   const int64_t from = is_whole ? 0 : part->low[at->first],
                 to = is_whole ? part->points : part->high[at->last - 1];
-  const int most = points_of_block(&b);
+  const int64_t cut = part->own_points.first, most = points_of_block(&b);
   int failed = 0;
-  for (b.first = from; b.first < to && failed == 0; b.first += most) {
-    b.count = to - b.first < most ? (int)(to - b.first) : most;
+  for (b.first = from; b.first < to && failed == 0; b.first += b.count) {
+    const int64_t end = b.first < cut && cut < to ? cut : to;
+    b.count = (int)(end - b.first < most ? end - b.first : most);
     failed = sum_block(&b, sums);
   }
   return failed;

@@ -60,13 +60,9 @@ static int quadratic_gradient_range(double t, const double *q, int first, int la
                                     void *user)
 {
   const dvi_density *d = user;
-  const dvi__csr *K = &d->stiffness;
   (void)t;
-  for (int i = first; i < last; i++) {
-    double sum = 0;
-    for (int64_t e = K->start[i]; e < K->start[i + 1]; e++) sum += K->value[e] * q[K->column[e]];
-    V_q[i - first] = sum - d->load[i];
-  }
+  dvi__multiply_rows(&d->stiffness, &d->repeated, first, last, q, V_q);
+  for (int i = first; i < last && d->has_load; i++) V_q[i - first] -= d->load[i];
   return 0;
 }
 

@@ -67,6 +67,10 @@ struct dvi_moving {
   dvi__stencils cell, bend, drag;           /* the last two along an axis, of 3 and 4 nodes */
   dvi__pattern pattern, drag_pattern, arcs; /* arcs: gradients of the constraints */
   dvi__number_translation translation[DVI__NODE_NUMBERS]; /* the symmetries */
+  dvi_symmetry symmetry[DVI__NODE_NUMBERS];               /* what the terms of the system list */
+  dvi_lagrangian lagrangian;
+  dvi_force viscous;
+  dvi_holonomic equal;
 };
 
 /* A state, or one at rest with v = NULL. */

@@ -113,7 +113,7 @@ dvi_status dvi_moving_project(const dvi_moving *moving, double t, const double *
   take(moving, x_rate, u_rate, made + n);
   dvi_status status = check_finite(moving, made, made + n);
   if (status == DVI_OK) status = dvi__moving_check(moving, &state);
-  if (status == DVI_OK) status = check_mass(moving, &state);
+  if (status == DVI_OK && (v != NULL || p != NULL)) status = check_mass(moving, &state);
   if (status == DVI_OK && p != NULL) status = find_momenta(moving, &state, made + 2 * n);
   double *wanted[3] = {q, v, p};
   for (size_t k = 0; k < 3 && status == DVI_OK; k++)

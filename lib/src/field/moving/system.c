@@ -126,27 +126,34 @@ static dvi_holonomic arcs_of(dvi_moving *m)
                          .user = m};
 }
 
+dvi_status dvi_moving_system_terms(dvi_moving *moving, dvi_system_terms *terms)
+{
+  if (moving == NULL || terms == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "moving: a field and a place for terms are needed");
+  DVI_TRY(check_rates(moving));
+  const int symmetries = find_symmetries(moving, moving->symmetry);
+  const int is_viscous = moving->viscosity > 0, is_equal = moving->motion == DVI_MOVING_EQUAL;
+  moving->lagrangian = lagrangian_of(moving);
+  moving->viscous = viscosity_of(moving);
+  moving->equal = arcs_of(moving);
+  *terms = (dvi_system_terms){.dimension = moving->unknowns,
+                              .lagrangian = &moving->lagrangian,
+                              .symmetries = symmetries > 0 ? moving->symmetry : NULL,
+                              .symmetry_count = symmetries,
+                              .forces = is_viscous ? &moving->viscous : NULL,
+                              .force_count = is_viscous,
+                              .holonomics = is_equal ? &moving->equal : NULL,
+                              .holonomic_count = is_equal,
+                              .autonomous = moving->path == NULL && !moving->part.depends_on_time};
+  return DVI_OK;
+}
+
 dvi_status dvi_moving_system(dvi_moving *moving, dvi_system **system)
 {
-  if (moving == NULL || system == NULL)
+  dvi_system_terms terms;
+  if (system == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "moving: a field and a place for the system are needed");
   *system = NULL;
-  DVI_TRY(check_rates(moving));
-  dvi_symmetry symmetry[DVI__NODE_NUMBERS];
-  const int symmetries = find_symmetries(moving, symmetry);
-  const int is_viscous = moving->viscosity > 0, is_equal = moving->motion == DVI_MOVING_EQUAL;
-  const dvi_lagrangian lagrangian = lagrangian_of(moving);
-  const dvi_force viscosity = viscosity_of(moving);
-  const dvi_holonomic arcs = arcs_of(moving);
-  const dvi_system_terms terms = {.dimension = moving->unknowns,
-                                  .lagrangian = &lagrangian,
-                                  .symmetries = symmetries > 0 ? symmetry : NULL,
-                                  .symmetry_count = symmetries,
-                                  .forces = is_viscous ? &viscosity : NULL,
-                                  .force_count = is_viscous,
-                                  .holonomics = is_equal ? &arcs : NULL,
-                                  .holonomic_count = is_equal,
-                                  .autonomous = moving->path == NULL &&
-                                                !moving->part.depends_on_time};
+  DVI_TRY(dvi_moving_system_terms(moving, &terms));
   return dvi_system_create(&terms, system);
 }

@@ -17,30 +17,29 @@
 
 /* ---- callbacks ---- */
 
-static int bending_gradient(double t, const double *q, double *V_q, void *user)
+/* Return row i of H q. */
+static double times(const dvi__csr *H, int64_t i, const double *q)
 {
-  const dvi_rotations *f = user;
-  const dvi__csr *H = &f->hessian;
-  (void)t;
-  for (int64_t i = 0; i < H->rows; i++) {
-    double sum = 0;
-    for (int64_t e = H->start[i]; e < H->start[i + 1]; e++) sum += H->value[e] * q[H->column[e]];
-    V_q[i] = sum - f->load[i];
-  }
-  return 0;
+  double sum = 0;
+  for (int64_t e = H->start[i]; e < H->start[i + 1]; e++) sum += H->value[e] * q[H->column[e]];
+  return sum;
 }
 
 static int bending_value(double t, const double *q, double *V, void *user)
 {
   const dvi_rotations *f = user;
-  const dvi__csr *H = &f->hessian;
   (void)t;
   *V = f->constant;
-  for (int64_t i = 0; i < H->rows; i++) {
-    double sum = 0;
-    for (int64_t e = H->start[i]; e < H->start[i + 1]; e++) sum += H->value[e] * q[H->column[e]];
-    *V += q[i] * (0.5 * sum - f->load[i]);
-  }
+  for (int64_t i = 0; i < f->hessian.rows; i++)
+    *V += q[i] * (0.5 * times(&f->hessian, i, q) - f->load[i]);
+  return 0;
+}
+
+static int bending_gradient(double t, const double *q, double *V_q, void *user)
+{
+  const dvi_rotations *f = user;
+  (void)t;
+  for (int64_t i = 0; i < f->hessian.rows; i++) V_q[i] = times(&f->hessian, i, q) - f->load[i];
   return 0;
 }
 
@@ -53,47 +52,46 @@ static int bending_hessian(double t, const double *q, double *V_qq, void *user)
   return 0;
 }
 
-static int potential_value(double t, const double *q, double *V, void *user)
+/* Scale `count` results of a node by its volume, if they are wanted. */
+static void weigh(double volume, int count, double *result)
 {
-  const dvi_rotations *f = user;
+  for (int i = 0; i < count && result != NULL; i++) result[i] *= volume;
+}
+
+/* Evaluate the potential at all nodes. Results that are not wanted are NULL. */
+static int evaluate_potential(const dvi_rotations *f, const double *q, double *V, double *V_q,
+                              double *V_qq)
+{
   int failed = 0;
-  (void)t;
-  *V = 0;
   for (int64_t a = 0; a < f->unknowns && failed == 0; a++) {
-    double value = 0;
-    failed = f->potential.density(f->x + a * f->axes, q + DVI__ENTRIES * a, &value, NULL, NULL,
-                                  f->potential.user);
-    *V += f->volume[a] * value;
+    double value = 0, *V_R = V_q != NULL ? V_q + DVI__ENTRIES * a : NULL,
+           *V_RR = V_qq != NULL ? V_qq + (ptrdiff_t)DVI__ENTRIES * DVI__ENTRIES * a : NULL;
+    failed = f->potential.density(f->x + a * f->axes, q + DVI__ENTRIES * a,
+                                  V != NULL ? &value : NULL, V_R, V_RR, f->potential.user);
+    if (V != NULL) *V += f->volume[a] * value;
+    weigh(f->volume[a], DVI__ENTRIES, V_R);
+    weigh(f->volume[a], DVI__ENTRIES * DVI__ENTRIES, V_RR);
   }
   return failed;
+}
+
+static int potential_value(double t, const double *q, double *V, void *user)
+{
+  (void)t;
+  *V = 0;
+  return evaluate_potential(user, q, V, NULL, NULL);
 }
 
 static int potential_gradient(double t, const double *q, double *V_q, void *user)
 {
-  const dvi_rotations *f = user;
-  int failed = 0;
   (void)t;
-  for (int64_t a = 0; a < f->unknowns && failed == 0; a++) {
-    double *V_R = V_q + DVI__ENTRIES * a;
-    failed = f->potential.density(f->x + a * f->axes, q + DVI__ENTRIES * a, NULL, V_R, NULL,
-                                  f->potential.user);
-    for (int i = 0; i < DVI__ENTRIES; i++) V_R[i] *= f->volume[a];
-  }
-  return failed;
+  return evaluate_potential(user, q, NULL, V_q, NULL);
 }
 
 static int potential_hessian(double t, const double *q, double *V_qq, void *user)
 {
-  const dvi_rotations *f = user;
-  int failed = 0;
   (void)t;
-  for (int64_t a = 0; a < f->unknowns && failed == 0; a++) {
-    double *V_RR = V_qq + (ptrdiff_t)DVI__ENTRIES * DVI__ENTRIES * a;
-    failed = f->potential.density(f->x + a * f->axes, q + DVI__ENTRIES * a, NULL, NULL, V_RR,
-                                  f->potential.user);
-    for (int i = 0; i < DVI__ENTRIES * DVI__ENTRIES; i++) V_RR[i] *= f->volume[a];
-  }
-  return failed;
+  return evaluate_potential(user, q, NULL, NULL, V_qq);
 }
 
 /* A turn of space about the axis k has the body velocity R^T e_k, a row of R. */

@@ -18,7 +18,7 @@ static void place_points(const dvi_space *space)
     after /= own;
     for (int64_t i = 0; i < before * own; i++) {
       const int64_t cell = i % own / line->cell_points, k = i % own % line->cell_points;
-      const double start = line->node[cell], width = line->node[cell + 1] - start;
+      const double start = line->node[cell], width = dvi__cell_width(line, cell);
       for (int64_t j = i * after; j < (i + 1) * after; j++) {
         x[j] = line->place[k] == 1 ? line->node[cell + 1] : start + width * line->place[k];
         space->weight[j] *= width * line->weight[k];

@@ -8,6 +8,7 @@
  * pairs (c, s) and multiply them by powers of the wave number. Boxes are transformed axis by axis.
  * Source: Leok 2004, sec. 5.8. */
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 #include "core/memory.h"
@@ -116,6 +117,19 @@ static double norm_of(const dvi__line *line, int64_t i)
   return sqrt((i == 0 ? 1 : 2) / (line->to - line->from));
 }
 
+/* Add the coefficients of one side to those of the other without a derivative, where all but the
+ * first have one factor. */
+static void scale(const dvi__line *line, const double *from, int64_t from_stride, double *to,
+                  int64_t to_stride)
+{
+  const double norm = norm_of(line, 1);
+  to[0] += norm_of(line, 0) * from[0];
+  if (from_stride == 1 && to_stride == 1)
+    for (int64_t i = 1; i < line->functions; i++) to[i] += norm * from[i];
+  else
+    for (int64_t i = 1; i < line->functions; i++) to[i * to_stride] += norm * from[i * from_stride];
+}
+
 /* Neighbouring lines of an array, whose numbers along the axis are `stride` apart. Up to 8 at a
  * time fill lines of the cache. */
 enum { LINES = 8 };
@@ -131,7 +145,9 @@ static void synthesise(const dvi__line *line, int order, const double *U, bundle
 {
   const int64_t points = line->cell_points;
   memset(values, 0, (size_t)(b.lines * points) * sizeof *values);
-  for (int64_t i = 0; i < line->functions; i++) {
+  for (int q = 0; q < b.lines && order == 0; q++)
+    scale(line, U + q, b.stride, values + q * points, 1);
+  for (int64_t i = 0; i < line->functions && order > 0; i++) {
     const dvi__fourier_image image = differentiate(line, order, i);
     const double factor = image.factor * norm_of(line, i);
     for (int q = 0; q < b.lines; q++)
@@ -148,7 +164,9 @@ static void add_analysis(const dvi__line *line, int order, const double *values,
   for (int64_t j = 0; j < points; j++)
     for (int q = 0; q < b.lines; q++) copy[q * points + j] = values[j * b.stride + q];
   for (int q = 0; q < b.lines; q++) dvi__fft_analyse(line->own, copy + q * points, work);
-  for (int64_t i = 0; i < line->functions; i++) {
+  for (int q = 0; q < b.lines && order == 0; q++)
+    scale(line, copy + q * points, 1, U + q, b.stride);
+  for (int64_t i = 0; i < line->functions && order > 0; i++) {
     const dvi__fourier_image image = differentiate(line, order, i);
     const double factor = image.factor * norm_of(line, i);
     for (int q = 0; q < b.lines; q++)
@@ -312,6 +330,56 @@ static dvi_status torus_row(const dvi_space *space, const int *order, const doub
   return DVI_OK;
 }
 
+/* Sum over the functions of axis d at x: from [own][after] to [after]. */
+static void sum_over_axis(const dvi__line *line, int order, double x, int64_t after,
+                          const double *from, double *to)
+{
+  memset(to, 0, (size_t)after * sizeof *to);
+  for (int64_t j = 0; j < line->functions; j++) {
+    const double factor = value_at(line, order, j, x);
+    for (int64_t i = 0; i < after; i++) to[i] += factor * from[j * after + i];
+  }
+}
+
+/* Points of a grid have the first coordinates of those before, and share the sums over these axes.
+ * sum[d] has those over the axes 0 to d. */
+static dvi_status sum_at_points(const dvi_space *space, const int *order, const double *U,
+                                int64_t count, const double *x, double *const *sum, double *values)
+{
+  const int axes = space->dimension;
+  double place[DVI_AXES_MAX] = {0};
+  for (int64_t i = 0; i < count; i++) {
+    bool is_known = i > 0;
+    int64_t after = space->functions;
+    for (int d = 0; d < axes; d++) {
+      const double at = x[d * count + i];
+      is_known = is_known && place[d] == at;
+      place[d] = at;
+      after /= space->line[d].functions;
+      if (!isfinite(at)) return dvi__space_outside(space, place);
+      if (!is_known)
+        sum_over_axis(&space->line[d], order[d], at, after, d > 0 ? sum[d - 1] : U, sum[d]);
+    }
+    values[i] = sum[axes - 1][0];
+  }
+  return DVI_OK;
+}
+
+static dvi_status torus_evaluate(const dvi_space *space, const int *order, const double *U,
+                                 int64_t count, const double *x, double *values)
+{
+  double *room = DVI_NEW(double, 2 * space->functions), *sum[DVI_AXES_MAX] = {room};
+  if (room == NULL) return dvi__fail(DVI_NO_MEMORY, "space: no memory");
+  int64_t after = space->functions;
+  for (int d = 0; d + 1 < space->dimension; d++) {
+    after /= space->line[d].functions;
+    sum[d + 1] = sum[d] + after;
+  }
+  const dvi_status status = sum_at_points(space, order, U, count, x, sum, values);
+  dvi__release(room);
+  return status;
+}
+
 /* The mass is the identity. */
 static dvi_status torus_interpolate(const dvi_space *space, const dvi__sampled *f, double *U)
 {
@@ -347,7 +415,7 @@ const dvi__domain dvi__torus = {
     .apply = torus_apply,
     .add_transposed = torus_add_transposed,
     .row = torus_row,
-    .evaluate = dvi__evaluate_by_rows,
+    .evaluate = torus_evaluate,
     .interpolate = torus_interpolate,
     .explain = torus_explain,
 };

@@ -64,6 +64,7 @@ typedef struct dvi__line {
   int value[DVI__SPACE_KEYS]; /* of the options */
   int64_t cells;
   double *node; /* [cells+1] ends of the cells */
+  double width; /* of equal cells, whose matrices have equal rows. 0 for other cells */
   int degree;   /* of polynomials, for dvi_space_explain. 0 for other functions */
   int locals, stride, smoothness;
   int64_t functions;
@@ -102,6 +103,12 @@ dvi_status dvi__line_divide(const dvi_axis *axis, int64_t cells, dvi__line *line
 /* For `create`: make a quadrature of Gauss with n points a cell. */
 dvi_status dvi__line_gauss(int n, dvi__line *line);
 void dvi__explain_gauss(const dvi__line *line, dvi__note *note);
+
+/* Return the width of a cell. Differences of the ends of equal cells would differ by roundings. */
+static inline double dvi__cell_width(const dvi__line *line, int64_t cell)
+{
+  return line->width > 0 ? line->width : line->node[cell + 1] - line->node[cell];
+}
 
 /* Return the number of quadrature points. */
 static inline int64_t dvi__line_points(const dvi__line *line)

@@ -104,6 +104,7 @@ dvi_status dvi__line_divide(const dvi_axis *axis, int64_t cells, dvi__line *line
   if (line->node == NULL)
     return dvi__fail(DVI_NO_MEMORY, "space: no memory for %lld cells", (long long)cells);
   if (axis->nodes != 0) return DVI_OK;
+  line->width = (line->to - line->from) / (double)cells;
   for (int64_t i = 0; i < cells; i++)
     line->node[i] = line->from + (line->to - line->from) * ((double)i / (double)cells);
   line->node[cells] = line->to;
@@ -163,7 +164,7 @@ static int gather_row(const dvi__line *line, int64_t cell, const double *local, 
 static void scale_row(const dvi__line *line, int order, int64_t cell, int count, double *value)
 {
   if (order == 0) return;
-  const double factor = pow(line->node[cell + 1] - line->node[cell], -order);
+  const double factor = pow(dvi__cell_width(line, cell), -order);
   for (int i = 0; i < count; i++) value[i] *= factor;
 }
 

@@ -48,38 +48,40 @@ static dvi_status divide(const dvi__line *line, int d, grid *g)
 
 /* ---- products ---- */
 
-/* Split a number into those of the axes. */
-static void split(const grid *g, int far, int64_t number, int64_t *index)
+/* Step to the next vertex, or with far = 1 to the next cell. */
+static void advance(const grid *g, int far, int64_t *index)
 {
   for (int d = g->dimension - 1; d >= 0; d--) {
-    const int64_t own = g->count[d] - far;
-    index[d] = number % own;
-    number /= own;
+    if (++index[d] < g->count[d] - far) return;
+    index[d] = 0;
   }
 }
 
 static void place_vertices(const grid *g, int64_t vertices, double *point)
 {
-  int64_t index[DVI_AXES_MAX];
-  for (int64_t v = 0; v < vertices; v++) {
-    split(g, 0, v, index);
+  int64_t index[DVI_AXES_MAX] = {0};
+  for (int64_t v = 0; v < vertices; v++, advance(g, 0, index))
     for (int d = 0; d < g->dimension; d++) point[v * g->dimension + d] = g->place[d][index[d]];
-  }
+}
+
+static int corners_of(const grid *g)
+{
+  int corners = 1;
+  for (int d = 0; d < g->dimension; d++) corners *= 2;
+  return corners;
 }
 
 /* Number the corners of each cell, of which bit d tells if it is at the far end of axis d. */
 static void connect(const grid *g, int64_t cells, int *vertex)
 {
-  int64_t index[DVI_AXES_MAX];
-  const int corners = 1 << g->dimension;
-  for (int64_t c = 0; c < cells; c++) {
-    split(g, 1, c, index);
+  int64_t index[DVI_AXES_MAX] = {0};
+  const int corners = corners_of(g);
+  for (int64_t c = 0; c < cells; c++, advance(g, 1, index))
     for (int corner = 0; corner < corners; corner++) {
       int64_t v = 0;
       for (int d = 0; d < g->dimension; d++) v = v * g->count[d] + index[d] + (corner >> d & 1);
       vertex[c * corners + corner] = (int)v;
     }
-  }
 }
 
 static dvi_status make_mesh(const grid *g, dvi_mesh **mesh)
@@ -93,7 +95,7 @@ static dvi_status make_mesh(const grid *g, dvi_mesh **mesh)
     return dvi__fail(DVI_BAD_SIZE, "space: a mesh of %lld vertices is too large to be shown",
                      (long long)vertices);
   double *point = DVI_NEW(double, vertices * g->dimension);
-  int *vertex = DVI_NEW(int, cells << g->dimension);
+  int *vertex = DVI_NEW(int, cells *(1 << g->dimension));
   dvi_status status = dvi__fail(DVI_NO_MEMORY, "space: no memory for %lld vertices",
                                 (long long)vertices);
   if (point != NULL && vertex != NULL) {

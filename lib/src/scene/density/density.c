@@ -26,7 +26,11 @@ static bool read_parts(dvi_scene *scene, const dvi__tree *section,
   if (!dvi__context_make(&c, scene, DVI__MENTIONS_Q | DVI__MENTIONS_V | DVI__MENTIONS_T,
                          "a density"))
     return false;
-  const bool good = read(&c, section, &node) && dvi__density_sort(&c, node);
+  const struct dvi__scene_density *s = scene->density;
+  const bool good = read(&c, section, &node) &&
+                    (s->jets.is_rotation ? dvi__rotations_take_density(&c, node)
+                                         : dvi__density_sort(&c, node)) &&
+                    (s->moving == NULL || dvi__moving_take_density(&c, node));
   dvi__context_free(&c);
   return good;
 }
@@ -231,7 +235,9 @@ static bool choose_step(dvi_scene *scene)
   double omega = 0;
   dvi_scene_plan *plan = &scene->plan;
   if (!(plan->fraction > 0)) return true;
-  const dvi_status status = dvi_density_fastest(scene->density->density, &omega);
+  const dvi_status status = scene->density->density == NULL
+                                ? DVI_UNSUPPORTED
+                                : dvi_density_fastest(scene->density->density, &omega);
   if (status != DVI_OK || !(omega > 0))
     return dvi__scene_refuse(scene, dvi__tree_find(scene->tree, "step")->span,
                              "the largest frequency of this density is not known, so that a step "
@@ -253,16 +259,32 @@ static void set_form(dvi_scene *scene)
     scene->mass = mass->diagonal != NULL ? "diagonal" : mass->values != NULL ? "sparse" : "scalar";
 }
 
+/* Make a field that has no space. */
+static bool make_other(dvi_scene *scene)
+{
+  const bool good = check_motion(scene) &&
+                    (scene->density->moving != NULL ? dvi__moving_make(scene)
+                                                    : dvi__rotations_make(scene)) &&
+                    dvi__density_make_probes(scene) && dvi__choose_field_columns(scene) &&
+                    choose_step(scene);
+  scene->jets = NULL;
+  return good;
+}
+
 static bool make(dvi_scene *scene)
 {
+  if (scene->density->moving != NULL || scene->density->jets.is_rotation) return make_other(scene);
   dvi__fault_clear();
-  if (!check_motion(scene) || !dvi__density_make_space(scene) || !check_orders(scene)) return false;
+  if (!dvi__density_read_final(scene) || !check_motion(scene) || !dvi__density_make_space(scene) ||
+      !check_orders(scene))
+    return false;
   const dvi_status status = make_field(scene);
   if (status != DVI_OK) return complain(scene, status);
   set_form(scene);
   const bool good = declare_unknowns(scene) && make_start(scene) &&
-                    dvi__density_make_probes(scene) && dvi__choose_field_columns(scene) &&
-                    dvi__lattice_find_symmetries(scene) && choose_step(scene);
+                    dvi__density_make_final(scene) && dvi__density_make_probes(scene) &&
+                    dvi__choose_field_columns(scene) && dvi__lattice_find_symmetries(scene) &&
+                    choose_step(scene);
   scene->jets = NULL; /* from here on the coordinates are the unknowns */
   return good;
 }
@@ -276,13 +298,16 @@ bool dvi__read_density(dvi_scene *scene, const dvi__tree *section)
 bool dvi__read_schroedinger(dvi_scene *scene, const dvi__tree *section)
 {
   scene->density->section = section;
-  return read_parts(scene, section, dvi__schroedinger_node) && make(scene);
+  return read_parts(scene, section, dvi__schroedinger_node) && make(scene) &&
+         dvi__equation_check_ground(scene);
 }
 
 void dvi__scene_density_clear(dvi_scene *scene)
 {
   if (scene->density == NULL) return;
-  dvi_schroedinger_destroy(&scene->density->equation);
+  dvi__moving_clear(scene);
+  dvi__rotations_clear(scene);
+  if (scene->density->equation != NULL) dvi_schroedinger_destroy(&scene->density->equation->made);
   dvi_density_destroy(&scene->density->density);
   dvi_space_destroy(&scene->density->space);
   dvi_mesh_destroy(&scene->density->mesh);

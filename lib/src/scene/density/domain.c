@@ -127,10 +127,13 @@ static bool read_kind(dvi_scene *scene, const dvi__tree *tree, dvi__declared_fie
     field->is_vector = true;
     return dvi__tree_whole(scene, &size, "the size of a vector", 1, &field->components);
   }
+  field->is_rotation = name != NULL && !has_size && strcmp(name, "rotation") == 0;
+  field->components = DVI__TURN_COMPONENTS;
+  if (field->is_rotation) return true;
   field->is_complex = field->is_vector = name != NULL && !has_size && strcmp(name, "complex") == 0;
   field->components = field->is_complex ? 2 : 1;
   return field->is_complex || (name != NULL && !has_size && strcmp(name, "scalar") == 0) ||
-         dvi__scene_refuse(scene, tree->span, "a field is scalar, complex or vector(d)");
+         dvi__scene_refuse(scene, tree->span, "a field is scalar, complex, vector(d) or rotation");
 }
 
 static bool count_components(dvi_scene *scene, dvi__declared_field *field)
@@ -168,6 +171,10 @@ static bool list_fields(dvi_scene *scene, const dvi__tree *section)
   if (s->fields == 0)
     return dvi__scene_refuse(scene, s->place->span,
                              "the section 'fields' is missing, as in 'fields: {u: scalar}'");
+  for (int i = 0; i < s->fields; i++) s->jets.is_rotation |= s->field[i].is_rotation;
+  if (s->jets.is_rotation && s->fields > 1)
+    return dvi__scene_refuse(scene, section->span,
+                             "a field of rotations is the only one of its scene");
   return schroedinger == NULL || (s->fields == 1 && s->field->is_complex) ||
          dvi__scene_refuse(scene, section->span,
                            "beside 'schroedinger' there is one field, which is complex");
@@ -182,7 +189,7 @@ static bool name_components(dvi_scene *scene, const dvi__declared_field *field)
     if (label == NULL) return dvi__scene_no_memory(scene);
     if (field->is_complex)
       (void)dvi__print(label, size, "%s_%s", field->name, k == 0 ? "re" : "im");
-    else if (field->is_vector)
+    else if (field->is_vector || field->is_rotation)
       (void)dvi__print(label, size, "%s_%d", field->name, k + 1);
     else
       (void)dvi__print(label, size, "%s", field->name);
@@ -227,6 +234,8 @@ static bool name_place(dvi_scene *scene)
                   field->components) ||
         !name_components(scene, field))
       return false;
+    if (field->is_rotation)
+      scene->coordinate[scene->coordinate_count - 1].shape = (dvi__shape){2, 3, 3};
   }
   return true;
 }

@@ -98,7 +98,7 @@ const dvi_density *dvi_scene_density(const dvi_scene *scene)
 
 const char *dvi_scene_component(const dvi_scene *scene, int i)
 {
-  return dvi_scene_density(scene) == NULL || i < 0 || i >= dvi__components(scene)
+  return scene == NULL || scene->density == NULL || i < 0 || i >= dvi__components(scene)
              ? NULL
              : scene->density->component[i];
 }

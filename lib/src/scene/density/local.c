@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "scene/density/scene_density.h"
+#include "scene/elaborate/elaborate.h"
 #include "scene/sections/sections.h"
 #include "scene/terms/fault.h"
 
@@ -156,31 +157,60 @@ static bool read_component(dvi__context *c, dvi__node node, unsigned may, dvi__l
                            "%s is a function of position, without the fields", c->where);
 }
 
-/* Refuse anything but a number or a vector of `count`. */
-static bool check_shape(const dvi__context *c, const dvi__tree *tree, dvi__shape found, int count)
+/* Refuse a value of another shape. */
+static bool check_shape(const dvi__context *c, const dvi__tree *tree, dvi__shape found,
+                        dvi__shape right)
 {
   char shape[48], needed[48];
-  if (count == 1 ? found.rank == 0 : found.rank == 1 && found.rows == count) return true;
-  return dvi__scene_refuse(
-      c->scene, tree->span, "%s is %s here, where %s is needed", c->where,
-      dvi__shape_text(found, shape, sizeof shape),
-      dvi__shape_text((dvi__shape){count > 1, count, 1}, needed, sizeof needed));
+  if (found.rank == right.rank && (right.rank == 0 || found.rows == right.rows) &&
+      (right.rank < 2 || found.columns == right.columns))
+    return true;
+  return dvi__scene_refuse(c->scene, tree->span, "%s is %s here, where %s is needed", c->where,
+                           dvi__shape_text(found, shape, sizeof shape),
+                           dvi__shape_text(right, needed, sizeof needed));
 }
 
-bool dvi__local_read(dvi_scene *scene, const dvi__tree *tree, unsigned may, const char *where,
-                     int count, dvi__local **local)
+/* Read a function, or its derivative along an axis from 0 on. */
+static bool read_function(dvi_scene *scene, const dvi__tree *tree, unsigned may, const char *where,
+                          int axis, dvi__shape shape, dvi__local **local)
 {
   const dvi__expression *e;
   dvi__context c;
   if (!dvi__tree_expression(scene, tree, &e) ||
       !dvi__context_make(&c, scene, DVI__MENTIONS_Q | may, where))
     return false;
-  const dvi__value value = dvi__elaborate(&c, e);
-  bool good = value.shape.rank >= 0 && check_shape(&c, tree, value.shape, count);
+  dvi__value value = dvi__elaborate(&c, e);
+  if (!dvi__failed(value) && axis >= 0) value = dvi__derivative_along(&c, value, axis, e->span);
+  bool good = value.shape.rank >= 0 && check_shape(&c, tree, value.shape, shape);
+  const int count = good ? dvi__value_size(value) : 0;
   for (int k = 0; k < count && good; k++)
     good = read_component(&c, value.node == NULL ? value.one : value.node[k], may, local + k);
   dvi__context_free(&c);
   return good;
+}
+
+/* Return the shape of a number, or of a vector of `count`. */
+static dvi__shape shape_of(int count)
+{
+  return (dvi__shape){count > 1, count, 1};
+}
+
+bool dvi__local_read(dvi_scene *scene, const dvi__tree *tree, unsigned may, const char *where,
+                     int count, dvi__local **local)
+{
+  return read_function(scene, tree, may, where, -1, shape_of(count), local);
+}
+
+bool dvi__local_read_slope(dvi_scene *scene, const dvi__tree *tree, int axis, const char *where,
+                           int count, dvi__local **local)
+{
+  return read_function(scene, tree, 0, where, axis, shape_of(count), local);
+}
+
+bool dvi__local_read_matrix(dvi_scene *scene, const dvi__tree *tree, const char *where,
+                            dvi__local **local)
+{
+  return read_function(scene, tree, 0, where, -1, (dvi__shape){2, 3, 3}, local);
 }
 
 /* ---- evaluation ---- */

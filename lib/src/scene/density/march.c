@@ -14,20 +14,24 @@ static bool is_lattice(const char *method)
 
 bool dvi__density_marches(const dvi_scene *scene, const char *method)
 {
-  return !scene->density->is_static && is_lattice(method);
+  return dvi__equation_marches(scene, method) || (!scene->density->is_static && is_lattice(method));
 }
 
 const char *dvi_scene_march_refused(const dvi_scene *scene, const char *method,
                                     const char **section)
 {
   if (!dvi_scene_marches(scene, method) || scene->density == NULL) return NULL;
-  return dvi__lattice_refused(scene, section);
+  if (method == NULL) method = scene->plan.method;
+  return is_lattice(method) ? dvi__lattice_refused(scene, section)
+                            : dvi__equation_refused(scene, section);
 }
 
 int dvi_scene_march_order(const dvi_scene *scene, const char *method)
 {
   if (!dvi_scene_marches(scene, method)) return 0;
   if (scene->density == NULL) return 2;
+  if (method == NULL) method = scene->plan.method;
+  if (!is_lattice(method)) return dvi__equation_order(method);
   return dvi__lattice_is_semidiscrete(scene, method) ? 2 : 0;
 }
 
@@ -36,7 +40,8 @@ dvi_status dvi__density_march(const dvi_scene *scene, const dvi_march_options *o
 {
   const char *section;
   if (dvi_scene_march_refused(scene, options->method, &section) != NULL) return DVI_UNSUPPORTED;
-  return dvi__lattice_march(scene, options, march);
+  return is_lattice(options->method) ? dvi__lattice_march(scene, options, march)
+                                     : dvi__equation_march(scene, options, march);
 }
 
 dvi_status dvi_scene_march_laws(const dvi_scene *scene, const dvi_march_options *options, int steps,
@@ -46,13 +51,17 @@ dvi_status dvi_scene_march_laws(const dvi_scene *scene, const dvi_march_options 
   if (scene == NULL || options == NULL || law == NULL || count == NULL) return DVI_BAD_ARGUMENT;
   if (scene->density == NULL)
     return dvi_field_laws(dvi_scene_field(scene), options, steps, law, count);
-  if (dvi_scene_march_refused(scene, options->method, &section) != NULL) return DVI_UNSUPPORTED;
-  return dvi__lattice_laws(scene, options, steps, law, count);
+  if (options->method == NULL || !dvi__density_marches(scene, options->method) ||
+      dvi_scene_march_refused(scene, options->method, &section) != NULL)
+    return DVI_UNSUPPORTED;
+  return (is_lattice(options->method) ? dvi__lattice_laws : dvi__equation_laws)(scene, options,
+                                                                                steps, law, count);
 }
 
 /* ---- the state ---- */
 
-/* Give the coordinates and velocities of values at the vertices, and the momenta of these. */
+/* Give the coordinates and velocities of values at the vertices, and the momenta of these. Those of
+ * fields of first order are functions of the coordinates. */
 static dvi_status find_state(const dvi_scene *scene, const dvi_march *march, double *U, double *q,
                              double *p)
 {
@@ -60,6 +69,8 @@ static dvi_status find_state(const dvi_scene *scene, const dvi_march *march, dou
   double *const rate = U + values, *const v = rate + values;
   const dvi_system *system = dvi_scene_system(scene);
   dvi_status status = dvi_march_sample(march, DVI_FORM_A, 0, NULL, U);
+  if (status == DVI_OK && dvi_march_size(march, DVI_FORM_E) == 0)
+    return dvi_density_project(scene->density->density, U, NULL, q, v, p);
   if (status == DVI_OK) status = dvi_march_sample(march, DVI_FORM_E, 0, NULL, rate);
   for (int64_t i = 0; i < values; i++) rate[i] = -rate[i];
   if (status == DVI_OK) status = dvi_density_project(scene->density->density, U, rate, q, v, NULL);
@@ -81,13 +92,29 @@ dvi_status dvi__density_march_state(const dvi_scene *scene, const dvi_march *mar
 
 /* ---- columns ---- */
 
+/* Tell if a name is "position_x" or "momentum_x" of an axis. */
+static bool is_of_axis(const struct dvi__scene_density *s, const char *name, bool *is_periodic)
+{
+  static const char *const start[] = {"momentum_", "position_"};
+  enum { LENGTH = 9 };
+  const bool fits = strncmp(name, start[0], LENGTH) == 0 || strncmp(name, start[1], LENGTH) == 0;
+  for (int d = 0; d < s->jets.dimension; d++)
+    if (fits && strcmp(name + LENGTH, s->jets.axis[d]) == 0) {
+      *is_periodic = s->mesh == NULL && s->axis[d].periodic && name[0] == 'm';
+      return true;
+    }
+  return false;
+}
+
 bool dvi__density_has_column(const dvi_scene *scene, const char *name)
 {
-  static const char momentum[] = "momentum_";
+  static const char *const of_equation[] = {"norm", "kinetic", "potential", "interaction"};
   const struct dvi__scene_density *s = scene->density;
-  const bool is_momentum = strncmp(name, momentum, sizeof momentum - 1) == 0;
-  const int axis = is_momentum ? dvi__axis_named(scene, name + sizeof momentum - 1) : -1;
+  bool is_periodic = false;
+  if (is_of_axis(s, name, &is_periodic)) return s->equation != NULL || is_periodic;
   for (int i = 0; i < s->symmetries; i++)
     if (strcmp(s->symmetry[i].name, name) == 0) return true;
-  return axis >= 0 && s->mesh == NULL && s->axis[axis].periodic;
+  for (size_t k = 0; s->equation != NULL && k < sizeof of_equation / sizeof *of_equation; k++)
+    if (strcmp(of_equation[k], name) == 0) return true;
+  return false;
 }

@@ -90,6 +90,10 @@ bool dvi__density_read_probes(dvi_scene *scene, const dvi__tree *section)
 {
   struct dvi__scene_density *s = scene->density;
   if (!dvi__want_mapping(scene, section, "probes")) return false;
+  if (s->jets.is_rotation)
+    return dvi__scene_refuse(scene, section->span,
+                             "fields of rotations have no probes; the columns of a run have the "
+                             "entries of the rotation of each node");
   s->probe = dvi__arena_take(&scene->arena, (size_t)section->count + 1, sizeof *s->probe);
   if (s->probe == NULL) return dvi__scene_no_memory(scene);
   for (int i = 0; i < section->count; i++)
@@ -182,9 +186,21 @@ static bool check_order(dvi_scene *scene, const dvi__local *f, int k)
   return true;
 }
 
+/* A probe of a field on a mesh that moves. */
+static int moving_value(double t, const double *q, const double *p, double *value, void *user)
+{
+  const struct dvi__density_probe *probe = user;
+  (void)p;
+  return probe->is_integral
+             ? dvi__moving_integral(probe->scene, probe->function, t, q, value)
+             : dvi__moving_value(probe->scene, probe->function, t, q, probe->point[0], value);
+}
+
 static bool try_probe(dvi_scene *scene, struct dvi__density_probe *probe)
 {
   const struct dvi__scene_density *s = scene->density;
+  if (s->moving != NULL)
+    return dvi__moving_check_probe(scene, probe->function, probe->name, probe->span);
   const int none[DVI_AXES_MAX] = {0};
   double *U = dvi__heap_take((size_t)s->functions, sizeof *U), value;
   if (U == NULL) return dvi__scene_no_memory(scene);
@@ -217,7 +233,9 @@ bool dvi__density_make_probes(dvi_scene *scene)
   for (int i = 0; i < s->probes; i++) {
     struct dvi__density_probe *probe = s->probe + i;
     if (!name_is_new(scene, probe) || !try_probe(scene, probe)) return false;
-    list[i] = (dvi_invariant){.name = probe->name, .value = probe_value, .user = probe};
+    list[i] = (dvi_invariant){.name = probe->name,
+                              .value = s->moving != NULL ? moving_value : probe_value,
+                              .user = probe};
   }
   scene->terms.invariants = list;
   scene->terms.invariant_count = s->probes;

@@ -7,6 +7,7 @@
 #define DVI_SCENE_DENSITY_SCENE_DENSITY_H
 #include <dvi/density.h>
 #include <dvi/multisymplectic.h>
+#include <dvi/schroedinger.h>
 
 #include "scene/elaborate/kernels.h"
 
@@ -34,6 +35,14 @@ enum { DVI__OF_FIELD = DVI__MENTIONS_V };
 bool dvi__local_read(dvi_scene *scene, const dvi__tree *tree, unsigned may, const char *where,
                      int count, dvi__local **local);
 
+/* Read a matrix of 3 x 3 functions of position. */
+bool dvi__local_read_matrix(dvi_scene *scene, const dvi__tree *tree, const char *where,
+                            dvi__local **local);
+
+/* Read the derivative of a function of position along an axis. */
+bool dvi__local_read_slope(dvi_scene *scene, const dvi__tree *tree, int axis, const char *where,
+                           int count, dvi__local **local);
+
 /* Evaluate l [count], l_z [variables*count] and l_zz [pairs*count], of which each may be NULL.
  * Returns as callbacks do. `user` is a dvi__local. */
 int dvi__local_density(int count, double t, const double *x, const double *z, double *l,
@@ -49,16 +58,34 @@ int dvi__local_rates(const dvi__local *local, int64_t count, double t, const dou
 
 /* ---- the scene ---- */
 
+/* Components of a field of rotations, nine entries and a turn. */
+enum { DVI__TURN_COMPONENTS = 12 };
+
 /* A field as it is declared, components `first` to first + components - 1. */
 typedef struct dvi__declared_field {
   const char *name;
   dvi__span span;
   bool is_complex, is_vector; /* a complex field is a vector of two */
+  bool is_rotation;           /* dvi__jets tells what its components are */
   int first, components;
 } dvi__declared_field;
 
+/* Schroedinger's equation of a scene, made when it is first asked for. */
+struct dvi__equation {
+  double hbar, mass;
+  int radial; /* 0, or the dimension */
+  dvi__local *potential, *interaction;
+  dvi_schroedinger *made; /* or NULL */
+};
+
 /* The classes into which the summands of a density are sorted, which are those of its parts. */
 enum { DVI__DENSITY_CLASSES = DVI_DENSITY_GENERAL + 1 };
+
+/* A mesh that moves, and what moves it. */
+typedef struct dvi__scene_moving dvi__scene_moving;
+
+/* A field of rotations (rotations.c). */
+typedef struct dvi__scene_rotations dvi__scene_rotations;
 
 struct dvi__scene_density {
   dvi__jets jets;
@@ -75,24 +102,30 @@ struct dvi__scene_density {
   int conditions, condition_room;
   bool has_placed_data;             /* a value or a flux depends on position */
   dvi__local **start, **start_rate; /* [components] or NULL for 0 */
+  dvi__local **final;               /* [components] or NULL without an end */
   struct dvi__density_probe *probe; /* [probes] */
   int probes;
   const dvi__tree *section;               /* density or schroedinger */
   dvi__local *part[DVI__DENSITY_CLASSES]; /* NULL for classes without summands */
   int summands[DVI__DENSITY_CLASSES];
-  int degree;                          /* of the density in the fields, or -1 if no polynomial */
-  bool is_uniform;                     /* the density does not depend on position */
-  bool is_static;                      /* it has no rates */
-  char chosen[DVI_AXES_MAX][96];       /* kinds of the axes, with the points chosen here */
-  double hbar, mass;                   /* of the section schroedinger */
-  dvi__local *potential, *interaction; /* likewise, NULL without it */
-  struct dvi_schroedinger *equation;   /* NULL until it is asked for */
+  int degree;                    /* of the density in the fields, or -1 if no polynomial */
+  bool is_uniform;               /* the density does not depend on position */
+  bool is_static;                /* it has no rates */
+  char chosen[DVI_AXES_MAX][96]; /* kinds of the axes, with the points chosen here */
   dvi_space *space;
   dvi_density *density;
   int64_t functions;
   dvi_multisymplectic_symmetry *symmetry; /* [symmetries] of a march on a lattice */
   int symmetries;
+  struct dvi__equation *equation;  /* NULL without the section schroedinger */
+  dvi__scene_moving *moving;       /* or NULL */
+  dvi__scene_rotations *rotations; /* or NULL */
+  double ground;                   /* norm of the ground state that is asked for, or 0 */
 };
+
+/* Read the section final, if there is one, and make the end of it. */
+bool dvi__density_read_final(dvi_scene *scene);
+bool dvi__density_make_final(dvi_scene *scene);
 
 /* Return the number of components of all fields. */
 static inline int dvi__components(const dvi_scene *scene)
@@ -153,5 +186,46 @@ dvi_status dvi__lattice_march(const dvi_scene *scene, const dvi_march_options *o
                               dvi_march **march);
 dvi_status dvi__lattice_laws(const dvi_scene *scene, const dvi_march_options *options, int steps,
                              dvi_law *law, int *count);
+
+/* Do the same for Schroedinger's equation. dvi__equation_order gives the order of a method. */
+bool dvi__equation_marches(const dvi_scene *scene, const char *method);
+int dvi__equation_order(const char *method);
+const char *dvi__equation_refused(const dvi_scene *scene, const char **section);
+/* Refuse a ground state of which there is none. */
+bool dvi__equation_check_ground(dvi_scene *scene);
+dvi_status dvi__equation_march(const dvi_scene *scene, const dvi_march_options *options,
+                               dvi_march **march);
+dvi_status dvi__equation_laws(const dvi_scene *scene, const dvi_march_options *options, int steps,
+                              dvi_law *law, int *count);
+
+/* ---- meshes that move (moving.c, moving_probe.c) ---- */
+
+/* Keep the whole density as one function. */
+bool dvi__moving_take_density(dvi__context *c, dvi__node root);
+
+/* Make the field, its unknowns and its start. */
+bool dvi__moving_make(dvi_scene *scene);
+void dvi__moving_clear(dvi_scene *scene);
+
+/* Refuse what a probe of such a field has not. */
+bool dvi__moving_check_probe(dvi_scene *scene, const dvi__local *function, const char *name,
+                             dvi__span span);
+
+/* Evaluate a function of the field and its slope at a point, or its integral. Returns as callbacks
+ * do. */
+int dvi__moving_value(const dvi_scene *scene, const dvi__local *function, double t, const double *q,
+                      double x, double *value);
+int dvi__moving_integral(const dvi_scene *scene, const dvi__local *function, double t,
+                         const double *q, double *value);
+
+/* ---- fields of rotations (rotations.c) ---- */
+
+/* Read the start, R and omega(R). */
+bool dvi__rotations_read_start(dvi_scene *scene, const dvi__tree *section);
+
+/* Take a density apart, and make the field, its unknowns and its start. */
+bool dvi__rotations_take_density(dvi__context *c, dvi__node root);
+bool dvi__rotations_make(dvi_scene *scene);
+void dvi__rotations_clear(dvi_scene *scene);
 
 #endif

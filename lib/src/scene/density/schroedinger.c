@@ -29,16 +29,6 @@ static bool check_inputs(dvi__context *c, dvi__span span, dvi__node node)
   return true;
 }
 
-/* Keep V or beta as a function of its own. */
-static bool keep_function(dvi__context *c, dvi__node node, dvi__local **local)
-{
-  dvi__kernels list = {0};
-  if (!dvi__kernels_add_node(c, node, &list) || !dvi__local_make(c->scene, &list, local))
-    return false;
-  if ((*local)->term != NULL) (*local)->term->role = DVI__ROLE_AUXILIARY;
-  return true;
-}
-
 /* Read an expression of position and time, a number if it is left out. */
 static bool read_function(dvi__context *c, const dvi__tree *section, const char *name, double usual,
                           dvi__node *node)
@@ -48,6 +38,31 @@ static bool read_function(dvi__context *c, const dvi__tree *section, const char 
   *node = dvi__constant(c->graph, usual);
   return tree == NULL || (dvi__tree_expression(c->scene, tree, &e) &&
                           dvi__elaborate_number(c, e, node) && check_inputs(c, tree->span, *node));
+}
+
+/* Keep a function of position and time for the equation. */
+static bool keep_function(dvi__context *c, dvi__node node, dvi__local **local)
+{
+  dvi__kernels list = {0};
+  if (!dvi__kernels_add_node(c, node, &list) || !dvi__local_make(c->scene, &list, local))
+    return false;
+  if ((*local)->term != NULL) (*local)->term->role = DVI__ROLE_AUXILIARY;
+  return true;
+}
+
+/* Read the dimension in which x is the distance from the origin. */
+static bool read_radial(dvi_scene *scene, const dvi__tree *section, int *radial)
+{
+  const dvi__tree *tree = dvi__tree_find(section, "radial");
+  const struct dvi__scene_density *s = scene->density;
+  *radial = 0;
+  if (tree == NULL) return true;
+  return dvi__tree_whole(scene, tree, "radial", 2, radial) &&
+         ((*radial <= 3 && s->mesh == NULL && s->jets.dimension == 1 && !(s->axis[0].from < 0) &&
+           !s->axis[0].periodic) ||
+          dvi__scene_refuse(scene, tree->span,
+                            "radial is the dimension 2 or 3 of a space in which the one axis, from "
+                            "0 on and not periodic, is the distance from the origin"));
 }
 
 static bool read_positive(dvi_scene *scene, const dvi__tree *section, const char *name,
@@ -93,26 +108,46 @@ static dvi__node squares(dvi__context *c, int from, int to)
   return sum;
 }
 
+/* Multiply by the measure 2 pi x or 4 pi x^2. */
+static dvi__node with_measure(dvi__graph *g, dvi__node x, int radial, dvi__node l)
+{
+  static const double pi = 3.14159265358979323846;
+  if (radial == 0) return l;
+  const dvi__node measure = radial == 2 ? dvi__scale(g, 2 * pi, x)
+                                        : dvi__scale(g, 4 * pi, dvi__square(g, x));
+  return dvi__multiply(g, measure, l);
+}
+
+static bool read_equation(dvi__context *c, const dvi__tree *section, struct dvi__equation *e,
+                          dvi__node *V, dvi__node *beta)
+{
+  static const char *const known[] = {"potential", "interaction", "hbar", "mass", "radial"};
+  return dvi__want_mapping(c->scene, section, "schroedinger") &&
+         dvi__want_keys(c->scene, section, "schroedinger", 5, known) &&
+         read_positive(c->scene, section, "hbar", &e->hbar) &&
+         read_positive(c->scene, section, "mass", &e->mass) &&
+         read_radial(c->scene, section, &e->radial) &&
+         read_function(c, section, "potential", 0, V) &&
+         read_function(c, section, "interaction", 0, beta) && keep_function(c, *V, &e->potential) &&
+         keep_function(c, *beta, &e->interaction);
+}
+
 bool dvi__schroedinger_node(dvi__context *c, const dvi__tree *section, dvi__node *node)
 {
-  static const char *const known[] = {"potential", "interaction", "hbar", "mass"};
+  dvi_scene *scene = c->scene;
   dvi__graph *g = c->graph;
-  struct dvi__scene_density *s = c->scene->density;
   dvi__node V, beta;
-  if (!dvi__want_mapping(c->scene, section, "schroedinger") ||
-      !dvi__want_keys(c->scene, section, "schroedinger", 4, known) ||
-      !read_positive(c->scene, section, "hbar", &s->hbar) ||
-      !read_positive(c->scene, section, "mass", &s->mass) ||
-      !read_function(c, section, "potential", 0, &V) ||
-      !read_function(c, section, "interaction", 0, &beta) || !keep_function(c, V, &s->potential) ||
-      !keep_function(c, beta, &s->interaction))
-    return false;
+  struct dvi__equation *e = dvi__arena_take(&scene->arena, 1, sizeof *e);
+  if (e == NULL) return dvi__scene_no_memory(scene);
+  if (!read_equation(c, section, e, &V, &beta)) return false;
+  scene->density->equation = e;
   const dvi__node norm = squares(c, -1, 0),
-                  kinetic = dvi__scale(g, s->hbar * s->hbar / (2 * s->mass),
-                                       squares(c, 0, c->scene->jets->dimension)),
-                  interaction = dvi__multiply(g, dvi__scale(g, 0.5, beta), dvi__square(g, norm));
-  *node = dvi__subtract(g, one_form(c, s->hbar), kinetic);
+                  kinetic = dvi__scale(g, e->hbar * e->hbar / (2 * e->mass),
+                                       squares(c, 0, scene->jets->dimension)),
+                  interaction = dvi__multiply(g, dvi__scale(g, 0.5, beta), dvi__square(g, norm)),
+                  x = dvi__variable_node(c, DVI__COORDINATES, (dvi__numbering){.base = 0}, 0);
+  *node = dvi__subtract(g, one_form(c, e->hbar), kinetic);
   *node = dvi__subtract(g, *node, dvi__multiply(g, V, norm));
-  *node = dvi__subtract(g, *node, interaction);
+  *node = with_measure(g, x, e->radial, dvi__subtract(g, *node, interaction));
   return true;
 }

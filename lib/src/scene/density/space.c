@@ -1,4 +1,5 @@
 /* The space of a density: how many points it has, and the coefficient of msfem. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -19,18 +20,30 @@ static int good_points(int least)
   }
 }
 
-/* Give a Fourier axis more points than the degree of a polynomial density times its modes, so that
- * its integrals are exact. Its own choice does so up to the degree 4. */
-static void choose_points(struct dvi__scene_density *s, int d)
+/* Tell if the scene's own method turns phases at points, of which there are as many as
+ * functions. */
+static bool is_split(const dvi_scene *scene)
 {
+  const char *method = scene->plan.method;
+  const size_t length = method != NULL ? strcspn(method, ":") : 0;
+  return scene->density->equation != NULL && length == strlen("split") &&
+         strncmp(method, "split", length) == 0;
+}
+
+/* Give a Fourier axis more points than the degree of a polynomial density times its modes, so that
+ * its integrals are exact. Its own choice does so up to the degree 4. For split steps there are as
+ * many as functions. */
+static void choose_points(const dvi_scene *scene, int d)
+{
+  struct dvi__scene_density *s = scene->density;
   static const char start[] = "fourier:modes=";
   const char *kind = s->axis[d].kind;
   char *rest;
-  if (strncmp(kind, start, sizeof start - 1) != 0 || s->degree <= 4) return;
+  if (strncmp(kind, start, sizeof start - 1) != 0 || (s->degree <= 4 && !is_split(scene))) return;
   const long modes = strtol(kind + sizeof start - 1, &rest, 10);
-  if (*rest != '\0' || modes < 1 || modes > 1000000 / s->degree) return;
-  (void)dvi__print(s->chosen[d], sizeof s->chosen[d], "%s%ld,points=%d", start, modes,
-                   good_points(s->degree * (int)modes + 1));
+  if (*rest != '\0' || modes < 1 || modes > 1000000 / (s->degree > 2 ? s->degree : 2)) return;
+  const int points = is_split(scene) ? 2 * (int)modes + 1 : good_points(s->degree * (int)modes + 1);
+  (void)dvi__print(s->chosen[d], sizeof s->chosen[d], "%s%ld,points=%d", start, modes, points);
   s->axis[d].kind = s->chosen[d];
 }
 
@@ -53,16 +66,23 @@ static bool check_periods(dvi_scene *scene)
 
 /* ---- the coefficient of msfem ---- */
 
-/* Return the pair of d(u,x) with itself in the quadratic part, u the first component, or -1. */
-static int find_coefficient(const dvi__local *part)
+/* Return the pair of the derivative of a component along an axis with itself in the quadratic part,
+ * or -1. */
+static int find_square(const dvi__local *part, int component, int axis)
 {
   for (int e = 0; part != NULL && e < part->pairs; e++) {
     const dvi_jet *jet = part->variable + part->pair[e][0];
-    if (part->pair[e][0] == part->pair[e][1] && jet->component == 0 && jet->order[0] == 1 &&
-        jet->order[1] == 0 && jet->order[2] == 0)
+    const int total = jet->order[0] + jet->order[1] + jet->order[2];
+    if (part->pair[e][0] == part->pair[e][1] && jet->component == component && total == 1 &&
+        jet->order[axis] == 1)
       return e;
   }
   return -1;
+}
+
+static int find_coefficient(const dvi__local *part)
+{
+  return find_square(part, 0, 0);
 }
 
 /* Give the a(x) of the summand -a d(u,x)^2/2. The second derivatives depend on x alone. */
@@ -85,6 +105,47 @@ static bool is_msfem(const char *kind)
   return kind != NULL && strncmp(kind, "msfem", strlen("msfem")) == 0;
 }
 
+/* Tell if the second derivatives by two derivatives in space are those of one coefficient, at a
+ * point. */
+static bool is_one(const dvi_scene *scene, const dvi__local *part, const double *l_zz)
+{
+  const struct dvi__scene_density *s = scene->density;
+  const double a = l_zz[find_coefficient(part)];
+  for (int c = 0; c < s->jets.components; c++)
+    for (int d = 0; d < s->jets.dimension; d++) {
+      const int e = find_square(part, c, d);
+      if (e < 0 || fabs(l_zz[e] - a) > 1e-12 * fabs(a)) return false;
+    }
+  for (int e = 0; e < part->pairs; e++) {
+    const dvi_jet *i = part->variable + part->pair[e][0], *k = part->variable + part->pair[e][1];
+    if (i != k && i->order[0] + i->order[1] + i->order[2] > 0 &&
+        k->order[0] + k->order[1] + k->order[2] > 0 && fabs(l_zz[e]) > 1e-12 * fabs(a))
+      return false;
+  }
+  return true;
+}
+
+/* Tell if all components and axes have one coefficient, at some points. */
+static bool is_isotropic(const dvi_scene *scene, const dvi__local *part)
+{
+  enum { POINTS = 16 };
+  const struct dvi__scene_density *s = scene->density;
+  const double z[DVI_JETS_MAX] = {0};
+  double *l_zz = dvi__heap_take((size_t)part->pairs + 1, sizeof *l_zz);
+  bool is = l_zz != NULL;
+  for (int k = 0; k < POINTS && is; k++) {
+    double x[DVI_AXES_MAX];
+    for (int d = 0; d < s->jets.dimension; d++) {
+      const double at = 0.618034 * (k + 1) * (d + 1);
+      x[d] = s->axis[d].from + (at - floor(at)) * (s->axis[d].to - s->axis[d].from);
+    }
+    is = dvi__local_density(1, 0, x, z, NULL, NULL, l_zz, (void *)part) != 0 ||
+         is_one(scene, part, l_zz);
+  }
+  dvi__heap_free(l_zz);
+  return is;
+}
+
 /* Find the part that has the coefficient, NULL where there is no msfem. */
 static bool choose_coefficient(dvi_scene *scene, dvi__local **part)
 {
@@ -92,11 +153,17 @@ static bool choose_coefficient(dvi_scene *scene, dvi__local **part)
   bool is_wanted = is_msfem(s->kind);
   for (int d = 0; d < s->jets.dimension; d++) is_wanted = is_wanted || is_msfem(s->axis[d].kind);
   *part = is_wanted ? s->part[DVI_DENSITY_QUADRATIC] : NULL;
-  return !is_wanted || find_coefficient(*part) >= 0 ||
+  if (!is_wanted) return true;
+  if (find_coefficient(*part) < 0)
+    return dvi__scene_refuse(scene, s->section->span,
+                             "msfem has the coefficient a of the summand -a*d(%s,%s)^2/2, and "
+                             "there is none",
+                             s->field->name, s->jets.axis[0]);
+  return is_isotropic(scene, *part) ||
          dvi__scene_refuse(scene, s->section->span,
-                           "msfem has the coefficient a of the summand -a*d(%s,%s)^2/2, and there "
-                           "is none",
-                           s->field->name, s->jets.axis[0]);
+                           "msfem has one coefficient for all components and axes, the a of "
+                           "-a*dot(grad(%s),grad(%s))/2, and here they differ",
+                           s->field->name, s->field->name);
 }
 
 /* ---- all ---- */
@@ -111,7 +178,7 @@ bool dvi__density_make_space(dvi_scene *scene)
                              "beside 'domain' the section 'space' is missing, as in "
                              "'space: fem:degree=2,cells=100'");
   if (s->mesh == NULL && !check_periods(scene)) return false;
-  for (int d = 0; d < s->jets.dimension && s->mesh == NULL; d++) choose_points(s, d);
+  for (int d = 0; d < s->jets.dimension && s->mesh == NULL; d++) choose_points(scene, d);
   if (!choose_coefficient(scene, &part)) return false;
   const dvi_space_options options = {.size = sizeof options,
                                      .kind = s->mesh == NULL   ? NULL

@@ -35,6 +35,7 @@ bool dvi__density_read_start(dvi_scene *scene, const dvi__tree *section)
   struct dvi__scene_density *s = scene->density;
   const size_t components = (size_t)s->jets.components;
   if (!dvi__want_mapping(scene, section, "initial")) return false;
+  if (s->jets.is_rotation) return dvi__rotations_read_start(scene, section);
   s->start = dvi__arena_take(&scene->arena, 2 * components, sizeof *s->start);
   if (s->start == NULL) return dvi__scene_no_memory(scene);
   s->start_rate = s->start + components;

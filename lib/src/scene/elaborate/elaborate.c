@@ -44,8 +44,8 @@ static int is_velocity(const dvi__expression *call)
 static dvi__value call_value(dvi__context *c, const dvi__expression *e)
 {
   if (strcmp(e->name, "p") == 0) return dvi__momentum_value(c, e);
-  if (is_velocity(e)) return dvi__velocity_value(c, e);
   if (dvi__is_word_of_field(c, e)) return dvi__field_word_value(c, e);
+  if (is_velocity(e)) return dvi__velocity_value(c, e);
   dvi__value *argument = dvi__arena_take(&c->scene->arena, (size_t)e->count + 1, sizeof *argument);
   if (argument == NULL) return dvi__refused(dvi__scene_no_memory(c->scene));
   for (int k = 0; k < e->count; k++) {

@@ -46,6 +46,8 @@ dvi__value dvi__chain_rule(dvi__context *c, dvi__value value, dvi__span span, dv
  * value. */
 bool dvi__is_word_of_field(const dvi__context *c, const dvi__expression *call);
 dvi__value dvi__field_word_value(dvi__context *c, const dvi__expression *e);
+/* Return the total derivative of a value along an axis of the density's domain. */
+dvi__value dvi__derivative_along(dvi__context *c, dvi__value value, int axis, dvi__span span);
 /* Return the momenta p(x) of a whole coordinate. Returns none for an argument of another form,
  * without a complaint. */
 dvi__value dvi__whole_momentum(dvi__context *c, const dvi__expression *e);

@@ -42,6 +42,9 @@ typedef struct dvi__scene_term {
 enum { DVI__JET_ORDER_MAX = 4 };
 typedef struct dvi__jets {
   int dimension, components;
+  /* Components 0 to 8 are the entries of a rotation R. The others, of which no value is taken, turn
+   * with the body: their rates are omega(R), and their derivatives along an axis kappa(R,x). */
+  bool is_rotation;
   const char *axis[3];
 } dvi__jets;
 

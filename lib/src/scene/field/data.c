@@ -194,6 +194,7 @@ bool dvi__read_potential(dvi_scene *scene, const dvi__tree *section)
 bool dvi__read_solve(dvi_scene *scene, const dvi__tree *section)
 {
   static const char *const known[] = {"mean", "imbalance"};
+  if (scene->density != NULL) return dvi__density_read_solve(scene, section);
   if (!of_wave(scene, section, "solve")) return false;
   double *const number[] = {&scene->field->solve.mean, &scene->field->solve.imbalance};
   if (!dvi__want_mapping(scene, section, "solve") ||

@@ -257,6 +257,7 @@ static bool final_is_complete(dvi_scene *scene, const dvi__tree *section, const 
 bool dvi__read_final(dvi_scene *scene, const dvi__tree *section)
 {
   const size_t n = (size_t)scene->n;
+  if (scene->density != NULL) return true; /* which has read it already */
   if (!dvi__want_mapping(scene, section, "final")) return false;
   if (scene->control_count == 0)
     return dvi__scene_refuse(scene, section->span,

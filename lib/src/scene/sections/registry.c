@@ -83,12 +83,12 @@ enum { FIELD_SECTIONS = sizeof field_sections / sizeof *field_sections, OF_FIELD
 
 /* Sections of a scene of a density, those first that no other scene has. */
 static const char *const density_sections[] = {
-    "domain",   "space",      "fields", "density", "schroedinger", "mesh",
-    "boundary", "probes",     "title",  "method",  "step",         "until",
-    "initial",  "parameters", "sweep",  "damping", "report",       "definitions"};
+    "domain",     "space",  "fields",  "density", "schroedinger", "moving", "mesh",
+    "boundary",   "probes", "title",   "method",  "step",         "until",  "initial",
+    "parameters", "sweep",  "damping", "report",  "definitions",  "solve",  "final"};
 enum {
   DENSITY_SECTIONS = sizeof density_sections / sizeof *density_sections,
-  OF_DENSITY_ALONE = 5
+  OF_DENSITY_ALONE = 6
 };
 
 static bool is_density_section(const char *name, int count)

@@ -76,6 +76,7 @@ bool dvi__is_of_field(const dvi_scene *scene);
 bool dvi__density_take_mesh(dvi_scene *scene, const dvi__tree *section, dvi_mesh *mesh);
 bool dvi__density_read_boundary(dvi_scene *scene, const dvi__tree *section);
 bool dvi__density_read_start(dvi_scene *scene, const dvi__tree *section);
+bool dvi__density_read_solve(dvi_scene *scene, const dvi__tree *section);
 bool dvi__density_read_probes(dvi_scene *scene, const dvi__tree *section);
 const dvi_mesh *dvi__density_mesh(dvi_scene *scene);
 void dvi__scene_density_clear(dvi_scene *scene);

@@ -311,9 +311,36 @@ static void pad_rows(const dvi__action *a, int rows, const double *from, double 
     memcpy(to + i * lanes, from + i * r, r * sizeof(double));
 }
 
+/* Multiply a row of r numbers. Its sums are those of dvi__lanes_product, which is called for
+ * longer rows and for many. */
+static inline void multiply_row(const size_t r, size_t lanes, const double *matrix,
+                                const double *from, double *to)
+{
+  for (size_t k = 0; k < lanes; k++) {
+    double sum = 0;
+    for (size_t j = 0; j < r; j++) sum += matrix[j * lanes + k] * from[j];
+    to[k] = sum;
+  }
+}
+
+/* Multiply few rows by one matrix. */
+static void multiply_few(const dvi__action *a, int rows, const double *matrix, const double *from,
+                         double *to)
+{
+  const size_t r = (size_t)a->r, lanes = (size_t)a->fixed_point.lanes;
+  for (int i = 0; i < rows; i++, from += r, to += lanes)
+    if (r == 1 && lanes == 1)
+      multiply_row(1, 1, matrix, from, to);
+    else if (r == 2 && lanes == 2)
+      multiply_row(2, 2, matrix, from, to);
+    else
+      multiply_row(r, lanes, matrix, from, to);
+}
+
 /* Multiply `rest` by the inverses. Neighbours that share one are multiplied at once. */
 static void multiply_by_inverses(const dvi__action *a, double *product)
 {
+  enum { FEW_ROWS = 4, FEW = 4 };
   const struct dvi__preconditioner *p = a->preconditioner;
   const size_t r = (size_t)a->r, lanes = (size_t)a->fixed_point.lanes;
   for (int i = 0, next; i < a->n; i = next) {
@@ -322,6 +349,8 @@ static void multiply_by_inverses(const dvi__action *a, double *product)
     for (next = i + 1; next < a->n && p->place[next] == p->place[i];) next++;
     if (p->place[i] < 0)
       pad_rows(a, next - i, from, to);
+    else if (a->r <= FEW && next - i <= FEW_ROWS)
+      multiply_few(a, next - i, p->in_use + (size_t)p->place[i] * inverse_size(a), from, to);
     else
       dvi__lanes_product(next - i, a->r, a->fixed_point.lanes, a->fixed_point.lanes,
                          p->in_use + (size_t)p->place[i] * inverse_size(a), from, to);

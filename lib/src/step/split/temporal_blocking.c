@@ -6,6 +6,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "num/simd/wide.h"
 #include "num/team.h"
 
 /* Lags are multiples of a cache line, so that vectors stay aligned. With blocks of 512 coordinates,
@@ -145,6 +146,11 @@ static void blocking_kick_drift(const part *own, int k, range r)
   dvi__lanes_kick_drift(&kick_drift);
 }
 
+WIDE static void add_term(size_t count, const double *restrict term, double *restrict sum)
+{
+  for (size_t i = 0; i < count; i++) sum[i] += term[i];
+}
+
 /* Add the potentials' gradients at q, in the order of the plain operations. */
 static int blocking_gradient(const part *own, double t, const double *q, range r)
 {
@@ -156,7 +162,7 @@ static int blocking_gradient(const part *own, double t, const double *q, range r
     if (asked->gradient_range(t, q, (int)r.first, (int)r.last, k == 0 ? sum : own->term,
                               asked->user) != 0)
       return 0;
-    for (size_t i = 0; i < count && k > 0; i++) sum[i] += own->term[i];
+    if (k > 0) add_term(count, own->term, sum);
   }
   return dvi__lanes_all_finite(count, sum);
 }

@@ -1,0 +1,21 @@
+/* A mesh of a scene that moves. */
+#ifndef DVI_SCENE_DENSITY_MOVING_H
+#define DVI_SCENE_DENSITY_MOVING_H
+#include <dvi/moving.h>
+
+#include "scene/density/scene_density.h"
+
+struct dvi__scene_moving {
+  const struct dvi__scene_density *density;
+  const dvi__tree *section;
+  dvi_moving_terms terms;
+  dvi__local *whole;                            /* the density */
+  dvi__local *motion, *monitor, *velocity;      /* or NULL */
+  dvi__local *slope[DVI_MOVING_COMPONENTS_MAX]; /* of the start, or NULL */
+  double jump[DVI_MOVING_COMPONENTS_MAX];
+  double end[2][DVI_MOVING_COMPONENTS_MAX]; /* fixed values */
+  int fixed[2];                             /* conditions that fix one */
+  dvi_moving *made;
+};
+
+#endif

@@ -1,0 +1,108 @@
+#!/bin/sh
+# Schroedinger's equation in the commands: steps that keep the norm, stationary and ground states.
+# Usage: test_schroedinger.sh DVI
+. "$(dirname "$0")/check.sh"
+
+# about FILE COLUMN VALUE TOLERANCE: require the number in the last row of a CSV file.
+about() {
+  awk -F, -v name="$2" -v value="$3" -v tolerance="$4" '
+    NR == 1 { for (i = 1; i <= NF; i++) if ($i == name) column = i }
+    { last = $column }
+    END { d = last - value; exit !(column && d <= tolerance && d >= -tolerance) }' "$1" ||
+    { fail "$2 is $3"; tail -n 1 "$1"; }
+}
+
+cat >plane.yaml <<END
+domain: {x: [0, 2*pi]}
+space: fourier:modes=4
+schroedinger: {interaction: 1.5}
+boundary: periodic
+initial: {psi: "[0.7*cos(2*x), 0.7*sin(2*x)]"}
+probes: {re: {of: re(psi), at: 0}}
+method: midpoint
+step: 0.05
+until: 2
+END
+expect 0 'a plane wave' run plane.yaml --final
+says out '^t,norm,energy,position_x,momentum_x,re$' 'what is measured'
+# 0.7 cos(w t), with (2/dt) tan(w dt/2) = 2 + beta a^2 cos^2(w dt/2), of dt = 0.05
+about out re 0.4731988818658 1e-12
+about out norm 3.0787608005180 1e-13
+about out momentum_x 6.1575216010360 1e-12
+expect 0 'parts of the energy' run plane.yaml --columns kinetic --final
+# 0.7 cos(2.735 t)
+expect 0 'four stages' run plane.yaml --final --method gauss:stages=4
+about out re 0.4810315032818 1e-12
+expect 0 'orders' order plane.yaml --t-end 0.5
+says out 'midpoint: claimed order 2, fitted 2.00 .*: ok' 'order 2'
+expect 0 'orders' order plane.yaml --t-end 0.5 --method gauss:stages=2
+says out 'claimed order 4, fitted [34].[09]. .*: ok' 'order 4'
+expect 0 'a check' check plane.yaml
+says out 'norm [0-9.]*e' 'the norm is measured'
+expect 0 'a method of one-forms' run plane.yaml --method dg --final
+says err 'dg does not keep the norm' 'a warning'
+expect 0 'a method that keeps the norm' run plane.yaml --method vprk --final
+if grep -q norm err; then fail 'no warning'; fi
+expect 2 'phases at points' run plane.yaml --method split
+says err 'points=2K+1' 'how many points there must be'
+sed 's/^method.*/method: split:order=4/' plane.yaml >split.yaml
+expect 0 'a scene that splits' run split.yaml --final
+about out re 0.4810315032818 1e-12
+sed 's/^method.*/method: split:order=3/' plane.yaml >odd.yaml
+expect 2 'an odd order' run odd.yaml
+says err '^dvi: odd.yaml:7:9: .*an even number from 2 to 6' 'the orders that there are'
+sed 's/^domain.*/domain: {x: [0, 1]}/;s/fourier:modes=4/fem:cells=9/
+  s/^boundary.*/boundary: {left: {robin: 2}}/;/^initial/d' plane.yaml >robin.yaml
+expect 2 'a boundary with data' run robin.yaml
+says err '^dvi: robin.yaml:4:11: .*psi = 0 on the boundary' 'the boundary that there may be'
+expect 2 'a step of waves' run plane.yaml --method verlet
+
+cat >mathieu.yaml <<END
+domain: {x: [0, 2*pi]}
+space: fourier:modes=12
+schroedinger: {potential: cos(2*x)}
+boundary: periodic
+END
+expect 0 'stationary states' modes mathieu.yaml --count 3 --csv - --shapes shapes.csv
+# half of Mathieu's characteristic values
+about out eigenvalue 0.9295540362572 1e-12
+says out '^2,-0.05512440849' 'each state is there once'
+says shapes.csv '^x,psi_re_mode_1,psi_im_mode_1' 'their shapes'
+
+cat >trap.yaml <<END
+parameters: {beta: 10}
+domain: {x: [-10, 10]}
+space: fourier:modes=63
+schroedinger: {potential: x^2/2, interaction: beta}
+boundary: periodic
+probes: {width: {integral: "x^2*dot(psi,psi)"}}
+solve: ground
+END
+expect 0 'a ground state' solve trap.yaml --csv state.csv
+says out '^mu  *3.1072430894' 'the chemical potential'
+says out '^energy  *1.9471272150' 'the energy'
+says out '^width ' 'the probes'
+says state.csv '^x,psi_re,psi_im,.psi.^2$' 'its values'
+expect 0 'more of it' solve trap.yaml --set beta=100
+says out '^mu  *14.13428708' 'the chemical potential'
+sed 's/beta: 10/beta: 5/;s/ground/{ground: 2}/' trap.yaml >two.yaml
+expect 0 'another norm' solve two.yaml
+says out '^mu  *3.1072430894' 'the same state but for its size'
+cat >plate.yaml <<END
+domain: {x: [0, 8]}
+space: fem:degree=6,cells=20
+schroedinger: {potential: x^2/2, interaction: 50, radial: 2}
+boundary: {right: fixed}
+solve: ground
+END
+expect 0 'a ground state that is round' solve plate.yaml
+says out '^mu  *4.143005' 'the chemical potential in a plane'
+says out '^energy  *2.896031' 'the energy in a plane'
+sed 's/radial: 2/radial: 4/' plate.yaml >four.yaml
+expect 2 'four dimensions' solve four.yaml
+says err '^dvi: four.yaml:3:59: .*radial is the dimension 2 or 3' 'the dimensions that there are'
+sed 's/right: fixed/right: {robin: 1}/' plate.yaml >flux.yaml
+expect 2 'a flux' solve flux.yaml
+says err '^dvi: flux.yaml:4:11: ' 'the place'
+
+finish
