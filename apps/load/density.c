@@ -45,7 +45,8 @@ void density_tell(const problem *scene)
   double omega = 0.0;
   dvi_scene_density_explain(scene->scene, text, sizeof text);
   (void)fputs(text, stdout);
-  if (dvi_density_fastest(density_of(scene), &omega) == DVI_OK && omega > 0.0)
+  if (density_of(scene) != NULL && dvi_density_fastest(density_of(scene), &omega) == DVI_OK &&
+      omega > 0.0)
     (void)printf("largest frequency of the quadratic part: %.6g; verlet is stable below h = %.6g\n",
                  omega, 2.0 / omega);
 }

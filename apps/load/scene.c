@@ -272,7 +272,7 @@ void scene_tell(const problem *scene)
     (void)printf(", quadratic potentials %d", facts.quadratic_potentials);
   if (count_fast_potentials(scene->terms) > 0)
     (void)printf(", fast potentials %d", count_fast_potentials(scene->terms));
-  if (density_of(scene) != NULL) {
+  if (dvi_scene_component(scene->scene, 0) != NULL) {
     (void)printf("\n");
     density_tell(scene);
     return;

@@ -111,6 +111,12 @@ sed 's/^moving.*/moving: {motion: equal, stretch: 0.5, mu: 0.01}/;s/0.5\*x/0.5*s
   >arcs.yaml
 expect 0 'arcs of one length' run arcs.yaml --final
 
+# a density that depends on the position, which nodes feel
+sed 's/1 - cos(u)/(1 + 0.2*sin(0.3*x))*(1 - cos(u)) + 0.1*x*d(u,x)^2/' ring.yaml >placed.yaml
+expect 0 'derivatives by the position' check placed.yaml
+says out 'derivatives: within\|derivatives: as right' 'the derivatives are right'
+says out 'a mesh of 64 cells whose nodes are unknowns: mu = 0.01, kappa = 0.05' 'the mesh'
+
 # refused NAME EDIT WORDS PLACE: require that an edited scene is refused at a place.
 refused() {
   sed "$2" ring.yaml >"$1.yaml"
@@ -124,7 +130,6 @@ refused word 's/^moving.*/moving: slowly/' "is yes, no, or tells how" 9:9
 refused key 's/kappa/kapa/' "kappa" 9:20
 refused negative 's/mu: 0.01/mu: -1/' 'mu is 0 or more' 9:14
 refused massless 's/mu: 0.01, /mu: 0, /;s/4.atan.*}/0}/' 'give mu > 0' 9:9
-refused placed 's/cos(u))/x*cos(u))/' 'does not depend on the position' 6:10
 refused leap "s/periodic/{left: {fixed: 0}}/" 'a jump is what a field on a periodic axis' 9:92
 refused rate "s/d(u,x)\", at/u'\", at/" "'slope' has others" 10:45
 refused flux 's/^boundary.*/boundary: {left: {free: 1}}/;s/, jump.*}/}/' 'no flux and no robin' 7:11

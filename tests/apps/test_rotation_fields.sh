@@ -50,6 +50,7 @@ expect 0 'orders' order ring.yaml --t-end 0.5
 says out 'lie-verlet: claimed order 2, fitted 2.00 .*: ok' 'the order'
 expect 0 'a check' check ring.yaml
 says out '^derivatives: ' 'the derivatives are right'
+says out '^rotations at 16 nodes' 'the nodes'
 expect 0 'nodes' run ring.yaml --columns R_1_11,R_16_33,omega_R_1_x --final
 says out '^t,R_1_11,R_16_33,omega_R_1_x$' 'the names of nodes'
 

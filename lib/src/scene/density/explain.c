@@ -31,7 +31,7 @@ static void add_fields(const struct dvi__scene_density *s, note *to)
     const dvi__declared_field *field = s->field + i;
     add(to, "%s %s ", i > 0 ? "," : "", field->name);
     if (field->is_complex || !field->is_vector)
-      add(to, "%s", field->is_complex ? "complex" : "scalar");
+      add(to, "%s", field->is_complex ? "complex" : field->is_rotation ? "rotation" : "scalar");
     else
       add(to, "vector(%d)", field->components);
   }
@@ -79,9 +79,12 @@ void dvi_scene_density_explain(const dvi_scene *scene, char *text, size_t size)
   note to = {text, size};
   if (text == NULL || size == 0) return;
   text[0] = '\0';
-  if (dvi_scene_density(scene) == NULL) return;
+  if (scene == NULL || scene->density == NULL) return;
   const struct dvi__scene_density *s = scene->density;
   add_fields(s, &to);
+  if (s->moving != NULL) dvi__moving_explain(scene, text + strlen(text), size - strlen(text));
+  if (s->rotations != NULL) dvi__rotations_explain(scene, text + strlen(text), size - strlen(text));
+  if (s->density == NULL) return;
   add_parts(s, &to);
   dvi_space_explain(s->space, text + strlen(text), size - strlen(text));
   if (text[strlen(text) - 1] != '\n') add(&to, "\n");

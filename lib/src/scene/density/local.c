@@ -56,13 +56,13 @@ static bool convert_input(dvi_scene *scene, dvi__local *local, const dvi__kernel
 {
   const dvi__kernel_input *from = kernel->input + i;
   const int number = dvi__input_number(from, 0);
-  dvi_jet jet = {.rate = from->block == DVI__VELOCITIES};
+  dvi_jet jet = {.component = -1, .rate = from->block == DVI__VELOCITIES};
   *to = *from;
   if (from->is_data) return true;
   *to = (dvi__kernel_input){.block = TIME};
   if (from->block == DVI__TIME) {
     local->has_time = true;
-  } else if (!dvi__jet_at(scene->jets, number, &jet.component, jet.order)) {
+  } else if (!dvi__jet_at(scene->jets, number, &jet.component, jet.order) && !local->is_placed) {
     local->has_place = true;
     *to = (dvi__kernel_input){.block = PLACE, .base = number};
   } else {
@@ -126,12 +126,13 @@ static bool make_function(dvi_scene *scene, dvi__local *local, dvi__kernels *lis
   return find_pairs(scene, local);
 }
 
-bool dvi__local_make(dvi_scene *scene, dvi__kernels *list, dvi__local **local)
+static bool make_local(dvi_scene *scene, dvi__kernels *list, bool is_placed, dvi__local **local)
 {
   dvi__local *made = *local = dvi__arena_take(&scene->arena, 1, sizeof *made);
   bool good = made != NULL;
   if (good) {
     made->dimension = scene->jets->dimension;
+    made->is_placed = is_placed;
     made->variable = dvi__arena_take(&scene->arena, DVI_JETS_MAX, sizeof *made->variable);
     made->span = dvi__arena_take(&scene->arena, DVI_JETS_MAX, sizeof *made->span);
     good = made->variable != NULL && made->span != NULL;
@@ -142,6 +143,16 @@ bool dvi__local_make(dvi_scene *scene, dvi__kernels *list, dvi__local **local)
   good = good && (list->count == 0 || make_function(scene, made, list));
   dvi__kernels_free(list);
   return good;
+}
+
+bool dvi__local_make(dvi_scene *scene, dvi__kernels *list, dvi__local **local)
+{
+  return make_local(scene, list, false, local);
+}
+
+bool dvi__local_make_placed(dvi_scene *scene, dvi__kernels *list, dvi__local **local)
+{
+  return make_local(scene, list, true, local);
 }
 
 /* ---- reading ---- */

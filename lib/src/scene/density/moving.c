@@ -180,8 +180,13 @@ bool dvi__read_moving(dvi_scene *scene, const dvi__tree *section)
 bool dvi__moving_take_density(dvi__context *c, dvi__node root)
 {
   dvi__kernels list = {0};
+  dvi__scene_moving *m = c->scene->density->moving;
+  if (!dvi__kernels_add_node(c, root, &list) || !dvi__local_make(c->scene, &list, &m->whole))
+    return false;
+  if (!m->whole->has_place || m->terms.motion == DVI_MOVING_PRESCRIBED) return true;
+  m->terms.space_derivative = dvi__moving_place_derivative;
   return dvi__kernels_add_node(c, root, &list) &&
-         dvi__local_make(c->scene, &list, &c->scene->density->moving->whole);
+         dvi__local_make_placed(c->scene, &list, &m->placed);
 }
 
 /* ---- the field ---- */
@@ -354,10 +359,6 @@ bool dvi__moving_make(dvi_scene *scene)
   struct dvi__scene_density *s = scene->density;
   dvi__scene_moving *m = s->moving;
   if (m->whole->term == NULL) return refuse(scene, s->section, "a density of zero moves nothing");
-  if (m->whole->has_place && m->terms.motion != DVI_MOVING_PRESCRIBED)
-    return refuse(scene, s->section,
-                  "on a mesh whose nodes are unknowns the density does not depend on the position; "
-                  "give them a path, as in 'motion: x'");
   dvi__fault_clear();
   if (!take_ends(scene)) return false;
   const dvi_status status = create(scene);
@@ -373,4 +374,18 @@ bool dvi__moving_make(dvi_scene *scene)
 void dvi__moving_clear(dvi_scene *scene)
 {
   if (scene->density->moving != NULL) dvi_moving_destroy(&scene->density->moving->made);
+}
+
+void dvi__moving_explain(const dvi_scene *scene, char *text, size_t size)
+{
+  static const char *const words[] = {"are unknowns", "follow a path",
+                                      "are unknowns, with arcs of one length"};
+  const dvi__scene_moving *m = scene->density->moving;
+  int cells;
+  (void)dvi_moving_nodes(m->made, &cells);
+  (void)dvi__print(text, size,
+                   "a mesh of %d cells whose nodes %s: mu = %.17g, kappa = %.17g, %d Gauss points "
+                   "a cell\n%d coordinates\n",
+                   cells, words[m->terms.motion], m->terms.mu, m->terms.kappa, m->terms.points,
+                   scene->n);
 }

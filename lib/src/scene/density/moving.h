@@ -10,6 +10,7 @@ struct dvi__scene_moving {
   const dvi__tree *section;
   dvi_moving_terms terms;
   dvi__local *whole;                            /* the density */
+  dvi__local *placed;                           /* with the position as a variable, or NULL */
   dvi__local *motion, *monitor, *velocity;      /* or NULL */
   dvi__local *slope[DVI_MOVING_COMPONENTS_MAX]; /* of the start, or NULL */
   double jump[DVI_MOVING_COMPONENTS_MAX];
@@ -17,5 +18,9 @@ struct dvi__scene_moving {
   int fixed[2];                             /* conditions that fix one */
   dvi_moving *made;
 };
+
+/* Derivatives by the position, as in dvi_moving_terms. `user` is the scene_moving. */
+int dvi__moving_place_derivative(int count, double t, const double *x, const double *z, double *l_x,
+                                 double *l_xz, double *l_xx, void *user);
 
 #endif

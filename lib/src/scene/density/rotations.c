@@ -286,7 +286,7 @@ static bool declare_unknowns(dvi_scene *scene)
   scene->n = ENTRIES * nodes;
   scene->nv = NUMBERS * nodes;
   scene->velocities = scene->n + scene->nv;
-  scene->zeros = dvi__arena_take(&scene->arena, (size_t)(scene->n + scene->velocities),
+  scene->zeros = dvi__arena_take(&scene->arena, (size_t)scene->n + (size_t)scene->velocities,
                                  sizeof *scene->zeros);
   if (x == NULL || scene->zeros == NULL) return dvi__scene_no_memory(scene);
   *x = (dvi__coordinate){.name = s->field->name,
@@ -325,7 +325,8 @@ static bool make_start(dvi_scene *scene)
   const int axes = scene->density->jets.dimension,
             nodes = (int)dvi_rotations_nodes(rotations_of(scene)->made, &x, &volume);
   const dvi__tree *initial = dvi__tree_find(scene->tree, "initial");
-  scene->q = dvi__arena_take(&scene->arena, (size_t)(scene->n + 2 * scene->nv), sizeof *scene->q);
+  scene->q = dvi__arena_take(&scene->arena, (size_t)scene->n + 2 * (size_t)scene->nv,
+                             sizeof *scene->q);
   if (scene->q == NULL) return dvi__scene_no_memory(scene);
   scene->v = scene->q + scene->n;
   scene->p = scene->v + scene->nv;
@@ -361,4 +362,12 @@ bool dvi__rotations_make(dvi_scene *scene)
 void dvi__rotations_clear(dvi_scene *scene)
 {
   if (scene->density->rotations != NULL) dvi_rotations_destroy(&rotations_of(scene)->made);
+}
+
+void dvi__rotations_explain(const dvi_scene *scene, char *text, size_t size)
+{
+  const dvi__scene_rotations *r = rotations_of(scene);
+  (void)dvi__print(text, size, "rotations at %lld nodes; bending is quadratic in their entries%s\n",
+                   (long long)dvi_rotations_nodes(r->made, NULL, NULL),
+                   r->has_potential ? ", beside a potential" : "");
 }

@@ -18,6 +18,7 @@ typedef struct dvi__local {
   dvi__scene_term *term;
   int dimension;
   bool has_time, has_place;
+  bool is_placed; /* the position along the first axis is a variable */
   int variables;
   dvi_jet *variable;  /* [variables] */
   dvi__span *span;    /* [variables] of the first use of each */
@@ -28,6 +29,9 @@ typedef struct dvi__local {
 
 /* Make a function of kernels of one element, and empty the list. */
 bool dvi__local_make(dvi_scene *scene, dvi__kernels *list, dvi__local **local);
+
+/* Do the same with the position along the first axis as a variable, whose component is -1. */
+bool dvi__local_make_placed(dvi_scene *scene, dvi__kernels *list, dvi__local **local);
 
 /* Read an expression, a number or a vector of `count`, as functions local[count] of position, and
  * of the time or the field as far as `may` says (DVI__MENTIONS_T, DVI__OF_FIELD). */
@@ -206,6 +210,7 @@ bool dvi__moving_take_density(dvi__context *c, dvi__node root);
 /* Make the field, its unknowns and its start. */
 bool dvi__moving_make(dvi_scene *scene);
 void dvi__moving_clear(dvi_scene *scene);
+void dvi__moving_explain(const dvi_scene *scene, char *text, size_t size);
 
 /* Refuse what a probe of such a field has not. */
 bool dvi__moving_check_probe(dvi_scene *scene, const dvi__local *function, const char *name,
@@ -227,5 +232,6 @@ bool dvi__rotations_read_start(dvi_scene *scene, const dvi__tree *section);
 bool dvi__rotations_take_density(dvi__context *c, dvi__node root);
 bool dvi__rotations_make(dvi_scene *scene);
 void dvi__rotations_clear(dvi_scene *scene);
+void dvi__rotations_explain(const dvi_scene *scene, char *text, size_t size);
 
 #endif
