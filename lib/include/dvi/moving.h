@@ -175,8 +175,8 @@ dvi_status dvi_moving_system_terms(dvi_moving *moving, dvi_system_terms *terms);
  *
  *  @retval DVI_CALLBACK_FAILED  the wave failed
  *  @retval DVI_NOT_FINITE       the wave is not finite. dvi_last_error() names the node
- *  @retval DVI_SINGULAR         without mu, u is straight at a node, or nodes of a mesh are free, and
- *                               v or p is wanted
+ *  @retval DVI_SINGULAR         v or p is wanted, and without mu u is straight at a node, or nodes
+ *                               of a mesh are free
  *  @retval DVI_NOT_CONVERGED    no arcs of one length were found
  *  @retval DVI_NO_MEMORY        there is no memory
  *  @retval (others)             as the callbacks fail */
