@@ -146,7 +146,7 @@ static int ramp(int64_t count, double t, const double *x, double *value, void *u
 /* Boxes are periodic along none of their axes, one, or both. */
 START_TEST(derivatives_agree_with_differences)
 {
-  const double jump[4] = {0.7, -0.4, 0.2, 0.5};
+  const double jumps[3][4] = {{0}, {0.7, -0.4}, {0.7, -0.4, 0.2, 0.5}};
   const int points[3] = {1, 3, 6};
   for (int i = 0; i < 18; i++) {
     const int periodic = i % 3, moves = i / 3 % 2, held = i / 6 != 1;
@@ -167,7 +167,7 @@ START_TEST(derivatives_agree_with_differences)
                                           .path = moves ? NULL : plane_sway,
                                           .mu = moves ? 0.3 : 0,
                                           .kappa = moves ? 0.2 : 0,
-                                          .jump = jump,
+                                          .jump = jumps[periodic],
                                           .condition = &fixed,
                                           .conditions = held,
                                           .slide = i % 2});
@@ -454,6 +454,7 @@ START_TEST(bad_terms_are_refused)
   REFUSE(DVI_BAD_ARGUMENT, "and equal arcs", motion = DVI_MOVING_EQUAL);
   REFUSE(DVI_BAD_SIZE, "2 points a triangle asked, 1, 3 or 6 possible", points = 2);
   REFUSE(DVI_BAD_ARGUMENT, "the jump of component 0 is nan", jump = bad);
+  REFUSE(DVI_BAD_ARGUMENT, "a jump of 1.3 along x needs a mesh", jump = affine_jump);
   REFUSE(DVI_BAD_ARGUMENT, "need a mesh", mesh = NULL; terms.axis.to = 1; terms.cells = 2;
          terms.slide = 1);
   REFUSE(DVI_BAD_ARGUMENT, "2 conditions are not given", conditions = 2);
