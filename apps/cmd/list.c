@@ -47,7 +47,11 @@ static void list_methods(void)
                "galerkin:degree=4,quadrature=lobatto,nodes=5\n"
                "Scenes of fields on meshes have marches, too: leapfrog (also called "
                "bossavit-kettunen, and yee on boxes), avi, avi:classes=no and tents "
-               "(docs/fields/maxwell.md)\n");
+               "(docs/fields/maxwell.md)\n"
+               "Scenes with a density on cells of linear functions have "
+               "multisymplectic:space=1/6,time=1/4 (docs/fields/multisymplectic.md), and those of "
+               "Schroedinger's equation have midpoint, gauss:stages=2 and split:order=4 of their "
+               "own (docs/fields/schroedinger.md)\n");
 }
 
 static result_table *methods_table(void)

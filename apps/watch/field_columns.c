@@ -22,7 +22,7 @@ static bool has_state(const field_columns *c)
 static bool is_among(const field_columns *c, int first, const char *name)
 {
   for (int i = 0; i < first; i++)
-    if (strcmp(c->all[i].name, name) == 0) return true;
+    if (c->all[i].name != NULL && strcmp(c->all[i].name, name) == 0) return true;
   return false;
 }
 
@@ -38,16 +38,15 @@ static bool is_probe(const field_columns *c, int invariants, const char *name)
 static bool list_all(field_columns *c)
 {
   int observables = 0;
+  const char *name;
   const int invariants = has_state(c) ? c->scene->terms->invariant_count : 0;
   while (dvi_march_observable(c->march, observables) != NULL) observables++;
   c->all = calloc((size_t)(observables + invariants) + 1, sizeof *c->all);
   if (c->all == NULL) return false;
-  for (int i = 0; i < observables; i++) {
-    const char *name = dvi_march_observable(c->march, i);
+  for (int i = 0; (name = dvi_march_observable(c->march, i)) != NULL; i++)
     if (!is_probe(c, invariants, name)) c->all[c->there++] = (field_column){name, i, -1};
-  }
   for (int i = 0; i < invariants; i++) {
-    const char *name = c->scene->terms->invariants[i].name;
+    name = c->scene->terms->invariants[i].name;
     if (!is_among(c, c->there, name)) c->all[c->there++] = (field_column){name, -1, i};
   }
   return true;

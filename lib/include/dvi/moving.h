@@ -45,8 +45,8 @@ typedef struct dvi_moving_end {
 } dvi_moving_end;
 
 /** A function of u alone that is added to the density, by its mean over a cell of an axis. It makes
- *  that part's integral exact. -V(u) = cos u - 1 has the mean cos(a) sinc(d/2) - 1 between values with
- *  middle a and difference d. */
+ *  that part's integral exact. -V(u) = cos u - 1 has the mean cos(a) sinc(d/2) - 1 between values
+ *  with middle a and difference d. */
 typedef struct dvi_moving_mean {
   /** The mean over the straight line from `left` to `right` [components*count], its first
    *  derivatives [2*components*count] by the left and then the right values, and the lower triangle
@@ -63,12 +63,12 @@ typedef struct dvi_moving_terms {
   size_t size;   /**< sizeof(dvi_moving_terms) */
   dvi_axis axis; /**< its nodes, if it has any, are those of reference. Without a kind */
   int cells;     /**< of the axis, at least 2. 0 with the axis's nodes, which determine it */
-  /** Triangles of reference in a plane, shared, instead of an axis. Their period, if any, is that of
-   *  the field. With it there are no mean, monitor, ends, viscosity, and dispersion */
+  /** Triangles of reference in a plane, shared, instead of an axis. Their period, if any, is that
+   *  of the field. With a mesh there are no mean, monitor, ends, viscosity, and dispersion */
   const dvi_mesh *mesh;
   int components; /**< 1 to DVI_MOVING_COMPONENTS_MAX. Default: 1 */
-  /** The density, with variables u, u_t, u_x, and u_y of the components. Its kind and its derivative
-   *  in time are not read. Required */
+  /** The density, with variables u, u_t, u_x, and u_y of the components. Its kind and its
+   *  derivative in time are not read. Required */
   const dvi_density_part *part;
   const dvi_moving_mean *mean; /**< a part of the density that is integrated exactly */
   int translations;            /**< not 0 if l does not depend on x */
@@ -132,8 +132,8 @@ extern "C" {
 /** Create a field on a moving mesh.
  *
  *  @retval DVI_BAD_SIZE         the number of cells, components or points is out of its range
- *  @retval DVI_BAD_ARGUMENT     the axis, the mesh, a node, an end, a condition, a variable of the
- *                               density, a mass, a stiffness or another argument is not as described
+ *  @retval DVI_BAD_ARGUMENT     the axis, a node, an end, a condition, a variable of the density, a
+ *                               mass, a stiffness or another argument is not as described
  *  @retval DVI_UNSUPPORTED      the mesh has other cells than triangles in a plane
  *  @retval DVI_CALLBACK_FAILED  the monitor or a datum failed
  *  @retval DVI_NOT_FINITE       the monitor is not positive and finite, or a datum is not finite
@@ -155,8 +155,10 @@ const double *dvi_moving_nodes(const dvi_moving *moving, int *cells);
  *
  *  Symmetries are "momentum_x" and "momentum_y", translations of all nodes with their values, and
  *  "momentum_u" or "momentum_u1" and so on, if the density allows them and all nodes have the
- *  unknown. A mesh on which a cell has no volume makes the step fail. dvi_last_error() names the
- *  cell then.
+ *  unknown. A mesh on which a cell has no volume makes the step fail wherever the method evaluates
+ *  L, and dvi_last_error() names the cell then. The method midpoint does so in the middle of steps
+ *  alone: if nodes have passed each other at the end of a step, the next step fails, and what is
+ *  evaluated there.
  *
  *  @param[out] system  owned by the caller, for dvi_system_destroy before the field's end
  *  @retval DVI_SINGULAR  a component has no rate in the density
@@ -175,8 +177,8 @@ dvi_status dvi_moving_system_terms(dvi_moving *moving, dvi_system_terms *terms);
  *
  *  @retval DVI_CALLBACK_FAILED  the wave failed
  *  @retval DVI_NOT_FINITE       the wave is not finite. dvi_last_error() names the node
- *  @retval DVI_SINGULAR         without mu, u is straight at a node, or nodes of a mesh are free, and
- *                               v or p is wanted
+ *  @retval DVI_SINGULAR         v or p is wanted, and without mu u is straight at a node, or nodes
+ *                               of a mesh are free
  *  @retval DVI_NOT_CONVERGED    no arcs of one length were found
  *  @retval DVI_NO_MEMORY        there is no memory
  *  @retval (others)             as the callbacks fail */
@@ -201,8 +203,8 @@ dvi_status dvi_moving_project(const dvi_moving *moving, double t, const double *
 dvi_status dvi_moving_lift(const dvi_moving *moving, double t, const double *q, double *x,
                            double *u);
 
-/** Evaluate u [components*count], or its derivatives along an axis, at points x [dimension*count] of
- *  coordinates q and time t. Periodic fields repeat themselves with their jump.
+/** Evaluate u [components*count], or its derivatives along an axis, at points x [dimension*count]
+ *  of coordinates q and time t. Periodic fields repeat themselves with their jump.
  *
  *  @param slope  1 for u_x, 2 for u_y, 0 for u
  *  @retval DVI_BAD_ARGUMENT  a point lies outside, a cell has no volume, or an edge of a periodic

@@ -3,9 +3,9 @@
  *  become vectors.
  *
  *  x = n pi/2 + r, |r| <= pi/4, with pi/2 in parts of 33 bits, whose products with n are exact
- *  (Cody and Waite 1980, ch. 8). r is kept as a sum of two numbers. Sine and cosine of r are minimax
- *  polynomials of degree 13 and 14, with the coefficients of Sun's fdlibm (1993). Results are right
- *  to 0.85 units in the last place. Compile without contraction of products and sums. */
+ *  (Cody and Waite 1980, ch. 8). r is kept as a sum of two numbers. Sine and cosine of r are
+ *  minimax polynomials of degree 13 and 14, with the coefficients of Sun's fdlibm (1993). Results
+ *  are right to 0.85 units in the last place. Compile without contraction of products and sums. */
 #ifndef DVI_SINES_H
 #define DVI_SINES_H
 #include <math.h>

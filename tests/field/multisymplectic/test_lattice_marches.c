@@ -336,6 +336,50 @@ START_TEST(failures_of_callbacks_leave_a_good_state)
 }
 END_TEST
 
+/* A density, one call of which fails. */
+typedef struct failing_density {
+  dvi_density_part good;
+  int calls, fails;
+} failing_density;
+
+static int fail_once(int count, double t, const double *x, const double *z, double *l, double *l_z,
+                     double *l_zz, void *user)
+{
+  failing_density *of = user;
+  return ++of->calls == of->fails ? 1
+                                  : of->good.density(count, t, x, z, l, l_z, l_zz, of->good.user);
+}
+
+/* Steps that fail may have computed their matrix anew before. */
+START_TEST(failed_steps_change_no_bit_of_later_ones)
+{
+  lattice a = kind(2);
+  a.V = "quartic";
+  a.step = .2;
+  lattice b = a;
+  dvi_march *clean = lattice_march(&a), *march = NULL;
+  const dvi_multisymplectic_terms *terms = lattice_terms(&b);
+  failing_density of = {.good = b.part[terms->parts - 1]};
+  b.part[terms->parts - 1].density = fail_once;
+  b.part[terms->parts - 1].user = &of;
+  ck_assert_int_eq(dvi_multisymplectic_create(terms, &march), DVI_OK);
+  lattice_start(clean, &a, hump, NULL);
+  lattice_start(march, &b, hump, NULL);
+  for (int failures = 0, i = 1; i <= 60; i++) {
+    of.calls = 0;
+    of.fails = i;
+    if (dvi_march_advance(march, i * a.step) != DVI_OK) failures++;
+    of.fails = 0;
+    advance(march, i * a.step);
+    advance(clean, i * a.step);
+    check_same(clean, march);
+    ck_assert(i < 60 || failures > 5);
+  }
+  dvi_march_destroy(&clean);
+  dvi_march_destroy(&march);
+}
+END_TEST
+
 static double slow_hump(double t, const double *x, const void *of)
 {
   return .1 * hump(t, x, of);
@@ -411,6 +455,7 @@ SUITE(lattice_marches)
   tcase_add_test(tests, bad_densities_are_refused);
   tcase_add_test(tests, bad_conditions_and_symmetries_are_refused);
   tcase_add_loop_test(tests, failures_of_callbacks_leave_a_good_state, 0, 3);
+  tcase_add_test(tests, failed_steps_change_no_bit_of_later_ones);
   tcase_add_test(tests, starts_beyond_the_density_leave_the_state);
   tcase_add_loop_test(tests, failed_allocations_are_reported, 0, KINDS);
 }

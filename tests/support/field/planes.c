@@ -7,6 +7,8 @@
 
 /* ---- densities ---- */
 
+static const double pi = 3.14159265358979323846;
+
 static const dvi_jet variable[] = {{.rate = 1}, {.order = {1}}, {.order = {0, 1}}, {0}};
 static const int pair[][2] = {{0, 0}, {1, 1}, {2, 2}, {3, 3}};
 static const int quartic_pair[][2] = {{0, 0}, {1, 1}, {2, 2}, {2, 1}};
@@ -103,10 +105,38 @@ dvi_mesh *plane_mesh(const dvi_generator_options *options, void (*move)(double *
 
 void shake(double *point, void *user)
 {
-  const double two_pi = 2 * 3.14159265358979323846, x = two_pi * point[0], y = two_pi * point[1];
+  const double x = 2 * pi * point[0], y = 2 * pi * point[1];
   const double amount = user != NULL ? *(const double *)user : 1;
   point[0] += amount * (0.04 * sin(x + 2 * y) + 0.02 * cos(3 * x));
   point[1] += amount * (0.04 * sin(2 * x - y) + 0.02 * cos(3 * y));
+}
+
+int plane_sway(int count, double t, const double *X, double *x, double *rate, void *user)
+{
+  (void)user;
+  for (int k = 0; k < count; k++)
+    for (int i = 0; i < 2; i++) {
+      const double phase = 2 * pi * (X[k] - (i ? 2 : -1) * X[count + k]) + t;
+      x[i * count + k] = X[i * count + k] + 0.03 * sin(phase);
+      rate[i * count + k] = 0.03 * cos(phase);
+    }
+  return 0;
+}
+
+int plane_bump(int64_t count, const double *x, double *u, double *u_x, double *u_t,
+               double *velocity, void *user)
+{
+  const double speed = *(const double *)user;
+  for (int64_t k = 0; k < count; k++) {
+    const double a = 2 * pi * x[k], b = 2 * pi * (x[k] + x[count + k]);
+    u[k] = 0.1 * (sin(a) + 0.5 * cos(b));
+    u_x[k] = 0.2 * pi * (cos(a) - 0.5 * sin(b));
+    u_x[count + k] = -0.1 * pi * sin(b);
+    u_t[k] = -0.1 * cos(a);
+    velocity[k] = speed;
+    velocity[count + k] = 0.3 * speed;
+  }
+  return 0;
 }
 
 /* ---- a kink along the diagonal ---- */
@@ -114,7 +144,7 @@ void shake(double *point, void *user)
 double plane_kink_value(const plane_kink *k, double t, const double *x)
 {
   const double at = (x[0] + x[1]) / sqrt(2) - k->v * t, turn = round(at / k->period);
-  const double g = 1 / sqrt(1 - k->v * k->v), pi = 3.14159265358979323846;
+  const double g = 1 / sqrt(1 - k->v * k->v);
   return 4 * atan(exp(g * (at - turn * k->period))) + 2 * pi * turn;
 }
 
@@ -139,7 +169,7 @@ int plane_kink_wave(int64_t count, const double *x, double *u, double *u_x, doub
 void grade_for_kink(double *point, void *user)
 {
   const plane_kink *k = user;
-  const double pi = 3.14159265358979323846, at = (point[0] + point[1]) / sqrt(2);
+  const double at = (point[0] + point[1]) / sqrt(2);
   double low = at - k->period, high = at + k->period;
   for (int i = 0; i < 60; i++) {
     const double s = (low + high) / 2, place[2] = {s * sqrt(0.5), s * sqrt(0.5)};

@@ -16,6 +16,12 @@ dvi_mesh *plane_mesh(const dvi_generator_options *options, void (*move)(double *
 /* Move points by some 0.06, or a part of it, a double, alike in each period of 1. */
 void shake(double *point, void *user);
 
+/* A path of nodes with the period 1, about 0.03 to and fro. */
+int plane_sway(int count, double t, const double *X, double *x, double *rate, void *user);
+
+/* A wave with the period 1 whose nodes have the velocity (1, 0.3) times `user`, a double. */
+dvi_moving_wave plane_bump;
+
 /* A kink 4 atan exp(g (n.x - v t)), n = (1,1)/sqrt 2, that repeats itself after `period` along n,
  * as a wave at t = 0, and points that are graded by its slope. */
 typedef struct plane_kink {

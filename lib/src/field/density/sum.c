@@ -241,8 +241,11 @@ static int sum_block(block *b, const dvi__density_sums *s)
 int dvi__part_sum(const dvi__integral *integral, const dvi__density_part *part,
                   const dvi__density_point *at, const double *room, const dvi__density_sums *sums)
 {
-  double stack[ROOM], weight[DVI__BLOCK_MOST]; /* written before they are read */
-  block b = {.integral = integral, .part = part, .at = at, .weight = weight, .room = stack};
+  struct {
+    double weight[DVI__BLOCK_MOST], room[ROOM];
+  } work;
+  block b = {
+      .integral = integral, .part = part, .at = at, .weight = work.weight, .room = work.room};
   if (room != NULL) {
     b.G = room;
     b.G_second = room + 2 * integral->density->moving;

@@ -23,8 +23,8 @@ static void copy_density(const dvi_moving_terms *t, dvi_moving *m)
   m->part.pair = NULL;
   if (t->mean != NULL) m->mean = *t->mean;
   m->translations = t->translations != 0;
-  m->space_derivative = t->motion == DVI_MOVING_FREE && !t->translations ? t->space_derivative
-                                                                         : NULL;
+  m->space_derivative = t->motion != DVI_MOVING_PRESCRIBED && !t->translations ? t->space_derivative
+                                                                               : NULL;
 }
 
 /* Place the quadrature points in a cell. */

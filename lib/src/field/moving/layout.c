@@ -61,18 +61,25 @@ static dvi_status couple(const dvi_moving *m, const dvi__stencils *s, const star
   return DVI_OK;
 }
 
+/* Give the first unknown of each node, first [nodes+1]. */
+static void find_first(const dvi_moving *m, int *first)
+{
+  for (int i = 0; i < m->nodes * m->numbers; i++) {
+    if (i % m->numbers == 0) first[i / m->numbers + 1] = first[i / m->numbers];
+    if (m->unknown[i] >= 0) first[i / m->numbers + 1]++;
+  }
+}
+
 /* Make the pattern of unknowns whose nodes have a stencil in common. */
 static dvi_status make_pattern(const dvi_moving *m, const dvi__stencils *s, dvi__pattern *pattern)
 {
   stars of = {0};
   dvi__pattern nodes = {0};
   int *first = DVI_NEW(int, m->nodes + 1);
-  dvi_status status = first != NULL ? find_stars(m, s, &of) : no_memory(m);
+  if (first == NULL) return no_memory(m);
+  find_first(m, first);
+  dvi_status status = find_stars(m, s, &of);
   if (status == DVI_OK) status = couple(m, s, &of, &nodes);
-  for (int i = 0; i < m->nodes * m->numbers && status == DVI_OK; i++)
-    if (m->unknown[i] >= 0) first[i / m->numbers + 1] = m->unknown[i] + 1;
-  for (int node = 0; node < m->nodes && status == DVI_OK; node++)
-    if (first[node + 1] == 0) first[node + 1] = first[node];
   if (status == DVI_OK) status = dvi__pattern_uneven_blocks(&nodes, first, pattern);
   dvi__release(of.start);
   dvi__release(of.number);

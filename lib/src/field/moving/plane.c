@@ -17,6 +17,16 @@ static dvi_status no_memory(const dvi_moving *m)
 
 /* ---- nodes and cells ---- */
 
+static dvi_status check_jump(const dvi_moving *m)
+{
+  for (int k = 0; k < AXES * m->components; k++)
+    if (m->mesh->period[k / m->components] == 0 && fabs(m->jump[k]) > 0)
+      return dvi__fail(DVI_BAD_ARGUMENT,
+                       "moving: a jump of %g along %c needs a mesh that is periodic along it",
+                       m->jump[k], "xy"[k / m->components]);
+  return DVI_OK;
+}
+
 static dvi_status check_mesh(const dvi_mesh *mesh)
 {
   if (mesh->kind != DVI_SIMPLICES || mesh->n != AXES || mesh->space != AXES)
@@ -139,6 +149,7 @@ dvi_status dvi__moving_take_mesh(const dvi_moving_terms *terms, dvi_moving *m)
 {
   DVI_TRY(check_mesh(terms->mesh));
   m->mesh = dvi_mesh_share(terms->mesh);
+  DVI_TRY(check_jump(m));
   m->cells = (int)m->mesh->count[AXES];
   m->nodes = m->listed = (int)m->mesh->count[0];
   memcpy(m->period, m->mesh->period, sizeof m->period);

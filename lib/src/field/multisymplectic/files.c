@@ -61,25 +61,30 @@ void dvi__lattice_save(const void *self, dvi__sections_writer *writer)
   const dvi__lattice_march *m = self;
   const size_t bytes = (size_t)m->lattice.size * sizeof(double);
   const double *const levels[LEVELS] = {m->before, m->now, m->next, m->p_now, m->p_next};
-  const identity id = {
-      hash_lattice(&m->lattice), m->lattice.dt, m->t0, m->t, m->factored_at, m->step};
+  const double factored_at = m->is_kept ? m->kept_at : m->factored_at;
+  double *const *factored = m->is_kept ? m->kept : m->factored;
+  const identity id = {hash_lattice(&m->lattice), m->lattice.dt, m->t0, m->t, factored_at, m->step};
   dvi__section_open(writer, "multisymplectic", VERSION);
   dvi__section_put(writer, &id, sizeof id);
   dvi__section_open(writer, "ms-levels", VERSION);
   for (int i = 0; i < LEVELS; i++) dvi__section_put(writer, levels[i], bytes);
   dvi__section_open(writer, "ms-matrix", VERSION);
-  for (int i = 0; i < MATRIX; i++) dvi__section_put(writer, m->factored[i], bytes);
+  for (int i = 0; i < MATRIX; i++) dvi__section_put(writer, factored[i], bytes);
 }
 
 /* Compute the matrix where it was computed, or where it is if that fails. */
 static dvi_status take_matrix(dvi__lattice_march *m, double t, const unsigned char *content)
 {
   const size_t bytes = (size_t)m->lattice.size * sizeof(double);
-  const double factored_at = m->factored_at;
   if (m->lattice.is_linear) return DVI_OK;
-  for (int k = 0; k < MATRIX; k++) memcpy(m->kept[k], content + (size_t)k * bytes, bytes);
-  const dvi_status status = dvi__lattice_factor(m, t, m->kept[0], m->kept[1]);
-  if (status != DVI_OK) (void)dvi__lattice_factor(m, factored_at, m->factored[0], m->factored[1]);
+  memcpy(m->level, content, bytes);
+  memcpy(m->p, content + bytes, bytes);
+  dvi__lattice_keep_factor(m);
+  const dvi_status status = dvi__lattice_factor(m, t, m->level, m->p);
+  if (status == DVI_OK)
+    m->is_kept = 0;
+  else
+    (void)dvi__lattice_restore_factor(m);
   return status;
 }
 

@@ -13,9 +13,10 @@ typedef struct dvi__lattice_march {
   double t0, t;
   int64_t step;
   double *before, *now, *next, *p_now, *p_next;
-  /* The matrix of a step, where it was computed, and a copy of that place */
+  /* The matrix of a step, where it was computed, and if is_kept a place to go back to */
   dvi__lattice_solver solver;
   double factored_at, kept_at;
+  int is_kept;
   double *factored[2], *kept[2];
   /* What a step computes */
   double *level, *p, *lower, *change; /* change [unknowns] */
@@ -30,6 +31,11 @@ void dvi__lattice_march_clear(dvi__lattice_march *m);
 /* Compute and factor the matrix of a step between two levels. */
 dvi_status dvi__lattice_factor(dvi__lattice_march *m, double t, const double *lower,
                                const double *upper);
+
+/* Keep the place of the matrix, unless one is kept. Compute the matrix there if one is, and keep none
+ * then. If that fails the next step tries again: what fails changes no bit of later steps. */
+void dvi__lattice_keep_factor(dvi__lattice_march *m);
+dvi_status dvi__lattice_restore_factor(dvi__lattice_march *m);
 
 /* Start, and take a step. They change nothing if they fail. */
 dvi_status dvi__lattice_start(void *self, const dvi_march_state *state);

@@ -38,6 +38,23 @@ dvi_status dvi__lattice_factor(dvi__lattice_march *m, double t, const double *lo
   return DVI_OK;
 }
 
+void dvi__lattice_keep_factor(dvi__lattice_march *m)
+{
+  if (m->is_kept) return;
+  m->is_kept = 1;
+  m->kept_at = m->factored_at;
+  for (int k = 0; k < 2; k++)
+    memcpy(m->kept[k], m->factored[k], (size_t)m->lattice.size * sizeof(double));
+}
+
+dvi_status dvi__lattice_restore_factor(dvi__lattice_march *m)
+{
+  if (!m->is_kept) return DVI_OK;
+  DVI_TRY(dvi__lattice_factor(m, m->kept_at, m->kept[0], m->kept[1]));
+  m->is_kept = 0;
+  return DVI_OK;
+}
+
 /* Set the change of the unknowns of m->level, the upper level of a row, and give its largest. */
 static dvi_status find_change(dvi__lattice_march *m, const dvi__row *row, const double *p0,
                               double *largest)
@@ -74,6 +91,7 @@ static dvi_status solve(dvi__lattice_march *m, double t, const double *u0, const
     if (change <= settled * scale || (change <= nearly * scale && change > slow * last))
       return DVI_OK;
     if (i > 0 && change > slow * last && factors < MOST_FACTORS) {
+      dvi__lattice_keep_factor(m);
       DVI_TRY(dvi__lattice_factor(m, t, u0, m->level));
       factors++;
       last = HUGE_VAL;
@@ -100,9 +118,13 @@ dvi_status dvi__lattice_step(dvi__lattice_march *m)
   const dvi__lattice *lattice = &m->lattice;
   const double t = m->t0 + (double)(m->step + 1) * lattice->dt,
                after = m->t0 + (double)(m->step + 2) * lattice->dt;
+  DVI_TRY(dvi__lattice_restore_factor(m));
   for (int64_t i = 0; i < lattice->size; i++) m->level[i] = 2 * m->next[i] - m->now[i];
   DVI_TRY(dvi__lattice_fix(lattice, after, m->level, NULL));
-  DVI_TRY(solve(m, t, m->next, m->p_next));
+  const dvi_status status = solve(m, t, m->next, m->p_next);
+  if (status != DVI_OK) (void)dvi__lattice_restore_factor(m);
+  DVI_TRY(status);
+  m->is_kept = 0;
   swap(&m->before, &m->now);
   swap(&m->now, &m->next);
   swap(&m->next, &m->level);
@@ -151,14 +173,6 @@ static dvi_status begin(dvi__lattice_march *m, const dvi_march_state *state, con
   return m->mean_rate ? begin_with_levels(m, b) : begin_with_rate(m, b);
 }
 
-/* Keep the matrix's place. */
-static void keep_factor(dvi__lattice_march *m)
-{
-  m->kept_at = m->factored_at;
-  for (int k = 0; k < 2; k++)
-    memcpy(m->kept[k], m->factored[k], (size_t)m->lattice.size * sizeof(double));
-}
-
 static void take_beginning(dvi__lattice_march *m, const beginning *b)
 {
   const size_t bytes = (size_t)m->lattice.size * sizeof(double);
@@ -171,6 +185,7 @@ static void take_beginning(dvi__lattice_march *m, const beginning *b)
                                 : m->next[i] - 2 * m->lattice.dt * m->rate[i];
   m->t = m->t0 = b->t;
   m->step = 0;
+  m->is_kept = 0;
 }
 
 dvi_status dvi__lattice_start(void *self, const dvi_march_state *state)
@@ -182,12 +197,12 @@ dvi_status dvi__lattice_start(void *self, const dvi_march_state *state)
   beginning b = {.t = state->t, .u = DVI_NEW(double, 2 * size)};
   if (b.u == NULL) return dvi__fail(DVI_NO_MEMORY, "multisymplectic: no memory for a start");
   b.p = b.u + size;
-  keep_factor(m);
+  if (!m->lattice.is_linear) dvi__lattice_keep_factor(m);
   const dvi_status status = begin(m, state, &b);
   if (status == DVI_OK)
     take_beginning(m, &b);
-  else if (!m->lattice.is_linear)
-    (void)dvi__lattice_factor(m, m->kept_at, m->kept[0], m->kept[1]);
+  else
+    (void)dvi__lattice_restore_factor(m);
   dvi__release(b.u);
   return status;
 }

@@ -249,19 +249,27 @@ static dvi_status refuse_step(const dvi__gauss *g, double t)
                    g->h, t);
 }
 
-/* Iterate until the next correction would be no rounding of z, or corrections are roundings that no
- * longer shrink. */
+/* Tell if the next correction would be no rounding of z, or corrections are roundings that no longer
+ * shrink. */
+static int is_settled(double change, double before, double size)
+{
+  return change * change <= 1e-17 * size * before || (change <= 1e-13 * size && change >= before);
+}
+
+/* Iterate until corrections have settled. What the iteration has not reached yet has the same sign
+ * in each step, and adds up in the norm: some more corrections make it small against roundings. */
 static dvi_status iterate(dvi__gauss *g, double t, const double *z)
 {
   const double size = dvi__largest(2 * (size_t)g->s->free, z);
   double before = size;
+  int settled = 0;
   memset(g->Z, 0, (size_t)(2 * g->stages * g->s->free) * sizeof *g->Z);
-  for (int i = 0; i < ITERATIONS; i++) {
+  for (int i = 0; i < ITERATIONS || settled > 0; i++) {
     DVI_TRY(act(g, t, z));
     find_residual(g);
     const double change = correct(g);
-    if (change * change <= 1e-17 * size * before || (change <= 1e-13 * size && change >= before))
-      return DVI_OK;
+    if (i > 0 && settled == 0 && is_settled(change, before, size)) settled = i;
+    if (settled > 0 && i >= settled + settled / 6) return DVI_OK;
     if (!(change <= 1e6 * size)) break;
     before = change;
   }

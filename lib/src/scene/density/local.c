@@ -251,6 +251,11 @@ static int evaluate_second(const dvi__local *local, int count, const double *con
   return failed;
 }
 
+static void repeat(double t, int count, double *time)
+{
+  for (int k = 0; k < count; k++) time[k] = t;
+}
+
 /* Evaluate at so few points that there is room for them. */
 static int evaluate(const dvi__local *local, int count, double t, const double *x, const double *z,
                     results to)
@@ -260,7 +265,7 @@ static int evaluate(const dvi__local *local, int count, double t, const double *
   double *const first[BLOCKS] = {[VARIABLES] = to.l_z, [TIME] = to.l_t};
   dvi__function *f = local->term->function;
   int failed = 0;
-  for (int k = 0; k < count; k++) time[k] = t;
+  repeat(t, count, time);
   if (to.l != NULL) failed = dvi__function_value(f, count, in, to.l);
   if (failed == 0 && (to.l_z != NULL || to.l_t != NULL))
     failed = dvi__function_gradient(f, count, in, first);
