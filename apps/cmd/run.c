@@ -342,7 +342,8 @@ static const char *const details[] = {
     "a long run every second, fourth and so on is drawn. A field with a density (section "
     "'density') "
     "shows its components, their\n"
-    "rates (u'), and of a complex field psi |psi|^2 and phase(psi). --pvd writes the components "
+    "rates (u'), derivatives of both in space (d(u,x)), and of a complex field psi |psi|^2 and "
+    "phase(psi). --pvd writes the components "
     "and "
     "|psi|^2 of a density at the\n"
     "vertices of the mesh, or of a domain at about as many points as it has functions.\n",
@@ -492,7 +493,8 @@ static const option command_options[] = {
     {.name = "map-of",
      OPTION_AT(run_request, map_of),
      .value = "NAME",
-     .help = "what --map draws, as u', psi_re or 'phase(psi)'; default: the first field, of a "
+     .help = "what --map draws, as u', 'd(u,x)', psi_re or 'phase(psi)'; default: the first field, "
+             "of a "
              "complex one |psi|^2"},
     {.name = "plot",
      OPTION_AT(run_request, plot),

@@ -1,5 +1,6 @@
 #include "load/quantity.h"
 
+#include <dvi/moving.h>
 #include <dvi/scene.h>
 #include <math.h>
 #include <stdio.h>
@@ -45,6 +46,10 @@ int quantities_of(const problem *scene, quantity item[QUANTITIES_MAX])
   const bool has_rates = scene->terms->one_form == NULL && dvi_scene_system(scene->scene) != NULL;
   for (int i = 0; dvi_scene_declared_of(scene->scene, i, &field); i++)
     add_field(scene->scene, &field, has_rates, &list);
+  for (int c = 0; dvi_scene_moving(scene->scene) != NULL &&
+                  dvi_scene_component(scene->scene, c) != NULL && c < DVI_COMPONENTS_MAX;
+       c++)
+    add(&list, QUANTITY_VALUE, c, "", dvi_scene_component(scene->scene, c), "");
   return list.count;
 }
 
@@ -61,15 +66,75 @@ static const char *name_at(int k, const void *list)
   return k < all->count ? all->item[k].name : NULL;
 }
 
-static int refuse(const quantity_list *list, const char *option, const char *name)
+static int refuse(const problem *scene, const quantity_list *list, const char *option,
+                  const char *name)
 {
   char near[2 * QUANTITY_NAME], names[1024] = "";
   size_t used = 0;
   for (int k = 0; k < list->count && used < sizeof names; k++)
     used += (size_t)snprintf(names + used, sizeof names - used, "%s%s", k > 0 ? ", " : "",
                              list->item[k].name);
-  return usage_error("%s %s: there is no such quantity%s; the fields show %s", option, name,
-                     suggestion(name, name_at, list, near, sizeof near), names);
+  return usage_error(
+      "%s %s: there is no such quantity%s; the fields show %s, and derivatives such as "
+      "d(%s,%s)",
+      option, name, suggestion(name, name_at, list, near, sizeof near), names, list->item[0].name,
+      dvi_scene_axis(scene->scene, 0));
+}
+
+/* ---- derivatives ---- */
+
+/* Return the axis of a name, -1 if there is none. */
+static int axis_of(const problem *scene, const char *name)
+{
+  const char *axis;
+  for (int d = 0; (axis = dvi_scene_axis(scene->scene, d)) != NULL; d++)
+    if (strcmp(axis, name) == 0) return d;
+  return -1;
+}
+
+/* Find a component or a rate. */
+static const quantity *differentiable(const quantity_list *list, const char *name)
+{
+  for (int k = 0; k < list->count; k++)
+    if ((list->item[k].kind == QUANTITY_VALUE || list->item[k].kind == QUANTITY_RATE) &&
+        strcmp(list->item[k].name, name) == 0)
+      return list->item + k;
+  return NULL;
+}
+
+/* Copy "d(u,x)" without blanks. Returns false if the text has another form. */
+static bool take_derivative(const char *text, char word[QUANTITY_NAME])
+{
+  size_t length = 0;
+  for (const char *c = text; *c != '\0' && length + 1 < QUANTITY_NAME; c++)
+    if (*c != ' ') word[length++] = *c;
+  word[length] = '\0';
+  return strncmp(word, "d(", 2) == 0 && strchr(word, ',') != NULL && word[length - 1] == ')';
+}
+
+/* Read "d(u,x)", "d(u',x,x)" and so on. */
+static bool read_derivative(const problem *scene, const quantity_list *list, const char *text,
+                            quantity *chosen)
+{
+  char name[QUANTITY_NAME] = "", word[QUANTITY_NAME];
+  if (!take_derivative(text, name)) return false;
+  memcpy(word, name, sizeof word);
+  word[strlen(word) - 1] = '\0';
+  char *axis = strchr(word, ',');
+  *axis++ = '\0';
+  const quantity *of = differentiable(list, word + 2);
+  if (of == NULL) return false;
+  *chosen = *of;
+  memcpy(chosen->name, name, sizeof name);
+  while (axis != NULL) {
+    char *next = strchr(axis, ',');
+    if (next != NULL) *next++ = '\0';
+    const int d = axis_of(scene, axis);
+    if (d < 0) return false;
+    chosen->order[d]++;
+    axis = next;
+  }
+  return true;
 }
 
 int quantity_choose(const problem *scene, const char *option, const char *name, quantity *chosen)
@@ -84,7 +149,8 @@ int quantity_choose(const problem *scene, const char *option, const char *name, 
     *chosen = item[k];
     return DONE;
   }
-  return refuse(&list, option, name != NULL ? name : "");
+  if (name != NULL && read_derivative(scene, &list, name, chosen)) return DONE;
+  return refuse(scene, &list, option, name != NULL ? name : "");
 }
 
 /* ---- values ---- */
@@ -100,15 +166,14 @@ static void combine(quantity_kind kind, int64_t count, const double *im, double 
 int quantity_evaluate(const quantity *shown, const dvi_space *space, quantity_state at,
                       int64_t count, const double *x, double *value)
 {
-  static const int none[DVI_AXES_MAX] = {0};
   const int64_t functions = dvi_space_functions(space);
   const double *part = (shown->kind == QUANTITY_RATE ? at.rate : at.U) +
                        shown->component * functions;
-  dvi_status status = dvi_space_evaluate(space, none, part, count, x, value);
+  dvi_status status = dvi_space_evaluate(space, shown->order, part, count, x, value);
   if (status == DVI_OK && (shown->kind == QUANTITY_SQUARE || shown->kind == QUANTITY_PHASE)) {
     double *im = calloc((size_t)count + 1, sizeof *im);
     if (im == NULL) return library_error(DVI_NO_MEMORY);
-    status = dvi_space_evaluate(space, none, part + functions, count, x, im);
+    status = dvi_space_evaluate(space, shown->order, part + functions, count, x, im);
     if (status == DVI_OK) combine(shown->kind, count, im, value);
     free(im);
   }

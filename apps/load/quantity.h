@@ -18,7 +18,8 @@ typedef enum quantity_kind {
 typedef struct quantity {
   char name[QUANTITY_NAME];
   quantity_kind kind;
-  int component; /**< of a complex field the first one */
+  int component;           /**< of a complex field the first one */
+  int order[DVI_AXES_MAX]; /**< derivatives along each axis, of a component or its rate */
 } quantity;
 
 /** The fields as coefficients [components*functions], and their rates, which may be NULL if no rate
@@ -34,7 +35,8 @@ int quantities_of(const problem *scene, quantity list[QUANTITIES_MAX]);
 /** Return whether a quantity is written to files: values and squares are. */
 bool quantity_is_usual(const quantity *shown);
 
-/** Find a quantity by its name, or without one that of the first field, of a complex one |psi|^2.
+/** Find a quantity by its name, also a derivative in space of a component or a rate, as "d(u,x)" or
+ * "d(u',x,x)". Without a name it is that of the first field, of a complex one |psi|^2.
  * Returns DONE, or complains about `option` and returns the exit code. */
 int quantity_choose(const problem *scene, const char *option, const char *name, quantity *chosen);
 

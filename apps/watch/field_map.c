@@ -32,6 +32,16 @@ static bool take_state(field_map *m)
 
 /* ---- fields with a density ---- */
 
+static int start_places(field_map *m, double from, double to)
+{
+  if (!space_map_start(&m->map, from, to)) return FAILED;
+  for (int i = 0; i < m->map.width; i++) {
+    const double part = (double)i / (m->map.width - 1);
+    m->x[i] = (1 - part) * from + part * to;
+  }
+  return DONE;
+}
+
 static int start_density(field_map *m, const dvi_density *density, const char *name)
 {
   const dvi_space *space = dvi_density_space(density);
@@ -48,12 +58,39 @@ static int start_density(field_map *m, const dvi_density *density, const char *n
   m->x = calloc(SPACE_MAP_WIDTH, sizeof *m->x);
   if (m->U == NULL || m->x == NULL || !take_state(m)) return out_of_memory();
   m->rate = m->U + coefficients;
-  if (!space_map_start(&m->map, point[0], point[dvi_mesh_count(mesh, 0) - 1])) return FAILED;
-  for (int i = 0; i < m->map.width; i++) {
-    const double part = (double)i / (m->map.width - 1);
-    m->x[i] = (1 - part) * m->map.from + part * m->map.to;
-  }
-  return DONE;
+  return start_places(m, point[0], point[dvi_mesh_count(mesh, 0) - 1]);
+}
+
+/* ---- meshes that move ---- */
+
+/* Places rest between the ends of the start. Nodes pass them. */
+static int start_moving(field_map *m, const char *name)
+{
+  const int code = quantity_choose(m->scene, "run: --map-of", name, &m->shown);
+  if (code != DONE) return code;
+  if (m->shown.order[0] > 1)
+    return usage_error("run: --map-of %s: a mesh that moves has linear cells, and first "
+                       "derivatives alone",
+                       m->shown.name);
+  int cells;
+  (void)dvi_moving_nodes(m->moving, &cells);
+  m->axis = dvi_scene_axis(m->scene->scene, 0);
+  m->U = calloc((size_t)SPACE_MAP_WIDTH * DVI_MOVING_COMPONENTS_MAX, sizeof *m->U);
+  m->x = calloc(SPACE_MAP_WIDTH, sizeof *m->x);
+  m->q = calloc((size_t)cells + 1, sizeof *m->q);
+  if (m->U == NULL || m->x == NULL || m->q == NULL) return out_of_memory();
+  const dvi_status status = dvi_moving_lift(m->moving, 0, m->scene->q, m->q, NULL);
+  return status == DVI_OK ? start_places(m, m->q[0], m->q[cells]) : library_error(status);
+}
+
+static bool put_moving(field_map *m, double t, const double *q, double *row)
+{
+  const int width = m->map.width;
+  const dvi_status status = dvi_moving_evaluate(m->moving, t, q, m->shown.order[0], width, m->x,
+                                                m->U);
+  if (status != DVI_OK) return library_error(status) == DONE;
+  memcpy(row, m->U + m->shown.component * width, (size_t)width * sizeof *row);
+  return true;
 }
 
 /* ---- waves on a mesh ---- */
@@ -100,7 +137,7 @@ static int start_wave(field_map *m, const dvi_field *field, const char *name)
   return space_map_start(&m->map, m->place[0], m->place[m->vertices - 1]) ? DONE : FAILED;
 }
 
-/* ---- both ---- */
+/* ---- all of them ---- */
 
 int field_map_start(field_map *m, const problem *scene, const char *path, const char *name)
 {
@@ -108,7 +145,9 @@ int field_map_start(field_map *m, const problem *scene, const char *path, const 
   if (path == NULL) return DONE;
   const dvi_density *density = density_of(scene);
   const dvi_field *field = dvi_scene_field(scene->scene);
+  m->moving = dvi_scene_moving(scene->scene);
   if (density != NULL) return start_density(m, density, name);
+  if (m->moving != NULL) return start_moving(m, name);
   if (field != NULL) return start_wave(m, field, name);
   return usage_error("run: --map is for fields, and %s is none; --plot draws its columns over time",
                      scene->name);
@@ -157,6 +196,7 @@ static bool put_wave(field_map *m, const double *q, double *row)
 
 static bool put(field_map *m, double t, const double *q, const double *p, double *row)
 {
+  if (m->moving != NULL) return put_moving(m, t, q, row);
   return m->vertices == 0 ? put_density(m, t, q, p, row) : put_wave(m, q, row);
 }
 

@@ -2,6 +2,7 @@
 #ifndef FIELD_MAP_H
 #define FIELD_MAP_H
 #include <dvi/march.h>
+#include <dvi/moving.h>
 
 #include "load/quantity.h"
 #include "plot/space_map.h"
@@ -11,11 +12,13 @@ typedef struct field_map {
   const problem *scene;
   const char *path; /**< NULL without a map */
   const char *axis;
-  quantity shown; /**< of a density. Without one it is u, the field's values at vertices */
+  quantity shown; /**< of a density or a mesh that moves. Else u, the field's values at vertices */
+  const dvi_moving *moving; /**< NULL for a mesh at rest */
   space_map map;
   double *x;         /**< [width] */
   double *q, *p, *v; /**< a state, and its velocities */
-  double *U, *rate;  /**< coefficients and rates of a density's fields, or values at vertices */
+  double *U, *rate;  /**< coefficients and rates of a density's fields, or values at vertices, or of
+                          all components at the places x on a mesh that moves */
   int64_t vertices;  /**< of the mesh of a field without a density, else 0 */
   int *order;        /**< [vertices] along the axis */
   double *place, *ascend; /**< [vertices] places along the axis, and values */

@@ -277,6 +277,11 @@ static int recorder_start_frames(recorder *r)
   const dvi_density *density = density_of(r->scene);
   r->field = dvi_scene_field(r->scene->scene);
   const dvi_mesh *mesh = dvi_scene_mesh(r->scene->scene);
+  if (dvi_scene_moving(r->scene->scene) != NULL)
+    return usage_error(
+        "run: --pvd is for meshes at rest, and the nodes of %s move; --map draws the "
+        "field over space and time, and rows have nodes, values and probes",
+        r->scene->name);
   const int code = frames_start(&r->frames, r->scene->name, mesh, r->request->pvd);
   if (code != DONE) return code;
   const int64_t numbers = density != NULL ? density_coefficients(density)

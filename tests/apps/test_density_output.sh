@@ -36,7 +36,14 @@ says err "draws u' over x and t" 'what it draws'
 cmp -s breather.svg rate.svg && fail 'two quantities have two pictures'
 expect 0 'a map backward' run breather.yaml --final --map back.svg --h -0.05 --t-end -5
 expect 2 'no such quantity' run breather.yaml --map x.svg --map-of v
-says err "no such quantity.*the fields show u, u'" 'what there is'
+says err "no such quantity.*the fields show u, u', and derivatives such as d(u,x)" 'what there is'
+expect 0 'a map of slopes' run breather.yaml --every 50 --map slope.svg --map-of 'd(u, x)' --t-end 20
+says err 'draws d(u,x) over x and t' 'what it draws'
+cmp -s breather.svg slope.svg && fail 'two quantities have two pictures'
+expect 0 'a map of slopes of rates' run breather.yaml --map x.svg --map-of "d(u',x)" --t-end 1
+rm x.svg
+expect 2 'no such axis' run breather.yaml --map x.svg --map-of 'd(u,y)'
+expect 2 'no such field' run breather.yaml --map x.svg --map-of 'd(v,x)'
 expect 2 'no SVG' run breather.yaml --map x.png
 expect 2 'a quantity without a map' run breather.yaml --map-of u
 expect 2 'a map of several runs' run breather.yaml --map x.svg --verify

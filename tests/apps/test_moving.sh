@@ -46,6 +46,16 @@ says out '^t,x_1,u_64$' 'the names of positions and values'
 expect 0 'a check' check ring.yaml
 says out '^derivatives: ' 'the derivatives are right'
 
+# Maps have places that rest, past which the nodes run.
+expect 0 'a map' run ring.yaml --final --map ring.svg
+says err 'draws u over x and t' 'what it draws'
+expect 0 'a map of slopes' run ring.yaml --t-end 1 --final --map slope.svg --map-of 'd(u,x)'
+says err 'draws d(u,x) over x and t' 'what it draws'
+expect 2 'a second derivative' run ring.yaml --map x.svg --map-of 'd(u,x,x)'
+says err 'first derivatives alone' 'why not'
+expect 2 'frames of nodes that move' run ring.yaml --pvd x.pvd
+says err 'the nodes of ring move' 'why not'
+
 cat >steep.yaml <<END
 # Burgers' equation inside of a wave that steepens
 parameters: {A: 0.3}

@@ -158,6 +158,10 @@ const dvi_moving *dvi_scene_moving(const dvi_scene *scene);
  *  scene. NULL if there is none. */
 const char *dvi_scene_component(const dvi_scene *scene, int i);
 
+/** Return the name of axis d of the domain of fields with a density, owned by the scene, or NULL if
+ *  there is none. */
+const char *dvi_scene_axis(const dvi_scene *scene, int d);
+
 /** Give field i of a scene with a density, in the order of the file. Returns 0 if there is none. */
 int dvi_scene_declared_of(const dvi_scene *scene, int i, dvi_scene_declared *field);
 

@@ -14,6 +14,13 @@ int dvi_scene_declared_of(const dvi_scene *scene, int i, dvi_scene_declared *fie
   return 1;
 }
 
+const char *dvi_scene_axis(const dvi_scene *scene, int d)
+{
+  return scene == NULL || scene->density == NULL || d < 0 || d >= scene->density->jets.dimension
+             ? NULL
+             : scene->density->jets.axis[d];
+}
+
 const dvi_mesh *dvi__density_mesh(dvi_scene *scene)
 {
   struct dvi__scene_density *s = scene->density;
