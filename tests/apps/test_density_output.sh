@@ -37,7 +37,8 @@ cmp -s breather.svg rate.svg && fail 'two quantities have two pictures'
 expect 0 'a map backward' run breather.yaml --final --map back.svg --h -0.05 --t-end -5
 expect 2 'no such quantity' run breather.yaml --map x.svg --map-of v
 says err "no such quantity.*the fields show u, u', and derivatives such as d(u,x)" 'what there is'
-expect 0 'a map of slopes' run breather.yaml --every 50 --map slope.svg --map-of 'd(u, x)' --t-end 20
+expect 0 'a map of slopes' run breather.yaml --every 50 --map slope.svg --t-end 20 \
+  --map-of 'd(u, x)'
 says err 'draws d(u,x) over x and t' 'what it draws'
 cmp -s breather.svg slope.svg && fail 'two quantities have two pictures'
 expect 0 'a map of slopes of rates' run breather.yaml --map x.svg --map-of "d(u',x)" --t-end 1
