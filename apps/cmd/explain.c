@@ -7,6 +7,7 @@
 
 #include "cli/command.h"
 #include "csv/events.h"
+#include "load/density.h"
 #include "load/open.h"
 #include "load/open_march.h"
 #include "cli/options.h"
@@ -155,6 +156,16 @@ static int explain_all(const problem *scene, const char *method, const pacing *h
   return code;
 }
 
+/* Without a method there is the field alone. */
+static int explain_density(problem *scene)
+{
+  scene_tell(scene);
+  complain(
+      "explain: with --method, or a section method in the scene, its steps are explained, too");
+  problem_destroy(&scene);
+  return DONE;
+}
+
 static const char *const details[] = {
     "Examples:\n"
     "  dvi explain kepler --method galerkin:degree=4\n"
@@ -224,6 +235,8 @@ int explain_command(int argc, char **argv)
   problem *scene;
   code = open_problem(name, &r.settings, &scene);
   if (code != DONE) return code;
+  if (r.method == NULL && scene->method == NULL && density_of(scene) != NULL)
+    return explain_density(scene);
   code = open_wish("explain", scene, &r.method);
   if (code == DONE) explain_problem(scene, r.method, &r.settings);
   if (code == DONE) code = explain_all(scene, r.method, &r.how, r.h);

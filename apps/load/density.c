@@ -24,7 +24,15 @@ bool has_field(const problem *scene)
 
 void density_warn(const char *command, const problem *scene, const char *method)
 {
-  if (dvi_scene_schroedinger(scene->scene) == NULL || strncmp(method, "vprk", 4) == 0) return;
+  if (dvi_scene_schroedinger(scene->scene) == NULL) return;
+  if (strncmp(method, "vprk", 4) == 0) {
+    for (int k = 0; k < scene->terms->potential_count; k++)
+      if (scene->terms->potentials[k].without_hessian)
+        complain("%s: vprk needs the Hessian, which so many modes do not give; split:order=4, "
+                 "gauss:stages=2 and midpoint take fields of any size",
+                 command);
+    return;
+  }
   complain("%s: %s does not keep the norm of the wave function; midpoint, gauss:stages=2, "
            "split:order=4 and vprk do",
            command, method);

@@ -12,7 +12,8 @@ const dvi_density *density_of(const problem *scene);
 /** Return whether a problem is a field, with a density or on a mesh alone. */
 bool has_field(const problem *scene);
 
-/** Tell that a mechanical method does not keep the norm of Schroedinger's equation. */
+/** Tell that a mechanical method does not keep the norm of Schroedinger's equation, or which
+ * methods are for fields that are too large for vprk. */
 void density_warn(const char *command, const problem *scene, const char *method);
 
 /** Tell that small fields grow without bound, as those of a density with a wrong sign. */

@@ -150,4 +150,14 @@ until: 0.01
 END
 expect 0 'an end that moves beside one that is free' run two.yaml --final
 
+# ---- without a method ----
+
+sed '/^method/d' two.yaml >bare.yaml
+expect 0 'a field alone' explain bare.yaml
+says out '^density: kinetic of 2 summands' 'what was found'
+says err 'with --method, or a section method in the scene' 'what else there is'
+sed 's/^step/method: vprk\nstep/; s/modes=4/modes=160/' plane.yaml >many.yaml
+expect 2 'vprk with many modes' run many.yaml --t-end 0.1
+says err 'split:order=4, gauss:stages=2 and midpoint take fields of any size' 'what takes them'
+
 finish

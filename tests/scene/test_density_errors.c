@@ -40,6 +40,8 @@ START_TEST(derivatives_are_along_axes_of_fields)
   density_refused("u'^2 - d(u,y)^2", 21, "a derivative is taken along an axis, x");
   density_refused("u'^2 - d(v,x)^2", 19, "there is no 'v'");
   density_refused("u'^2 - u_x^2", 17, "there is no 'u_x'; a derivative is d(u,x)");
+  density_refused("u_t^2", 10, "there is no 'u_t'; a rate is u'");
+  density_refused("u'^2 - diff(u,x)^2", 17, "there is no 'diff'; write d(u,x), or u' for a rate");
   density_refused("u'^2 - d(u)", 17, "d takes an expression and axes");
   density_refused("u'^2 - d(u,x,x,x,x,x)", 17, "more than order 4 in space");
   density_refused("u'^2 - d(u,x,x)^2", 17,
@@ -131,7 +133,9 @@ START_TEST(conditions_are_of_parts_and_do_not_contradict)
   section_refused("boundary: {left: {}}", 18, "a condition is fixed, or free");
   section_refused("boundary: {left: {fixed: 1, robin: 2}}", 18, "a condition is fixed, or free");
   section_refused("boundary: {left: {u: fixed, w: fixed}}", 29, "there is no field 'w'");
-  section_refused("boundary: loose", 11, "a condition is free or fixed");
+  section_refused("boundary: loose", 11, "there is no condition 'loose'; there are fixed, free");
+  section_refused("boundary: {left: dirichlet}", 18, "{fixed: value}, {free: flux} and {robin: a}");
+  section_refused("boundary: {fixed: sin(t)}", 12, "as in 'boundary: {boundary: {fixed: ..}}'");
   refused("mesh: {generator: disk}\nfields: {u: scalar}\nboundary: periodic\n" WAVE,
           ":3:11:", "periods of a mesh are those of its generator");
   refused("mesh: {generator: disk}\nfields: {u: scalar}\nboundary: {edge: fixed}\n" WAVE,

@@ -87,12 +87,17 @@ static bool read_data(dvi_scene *scene, const extent *of, const dvi__tree *tree)
 static bool read_word(dvi_scene *scene, const extent *of, const dvi__tree *tree)
 {
   static const char *const word[] = {"free", "fixed"};
-  int which;
+  int which = 0;
   if (strcmp(tree->text, "periodic") == 0)
     return dvi__scene_refuse(scene, tree->span,
                              "periodic is a whole axis of a domain, as in 'boundary: periodic' or "
                              "'{x: periodic}'");
-  if (!dvi__tree_word(scene, tree, "a condition", 2, word, &which)) return false;
+  while (which < 2 && strcmp(tree->text, word[which]) != 0) which++;
+  if (which == 2)
+    return dvi__scene_refuse(scene, tree->span,
+                             "there is no condition '%s'; there are fixed, free, periodic of a "
+                             "whole axis, {fixed: value}, {free: flux} and {robin: a}",
+                             tree->text);
   for (int k = 0; k < of->components; k++)
     if (!add_one(scene, of, of->first + k, which == 1 ? DVI_FIXED : DVI_FREE, NULL, 0))
       return false;
@@ -137,6 +142,11 @@ static int axis_of_part(const dvi_scene *scene, const char *name)
   return -1;
 }
 
+static bool is_condition(const char *word)
+{
+  return strcmp(word, "fixed") == 0 || strcmp(word, "free") == 0 || strcmp(word, "robin") == 0;
+}
+
 static bool refuse_part(dvi_scene *scene, const dvi__tree *key)
 {
   enum { PARTS_MOST = 16 };
@@ -144,6 +154,11 @@ static bool refuse_part(dvi_scene *scene, const dvi__tree *key)
   const char *part[PARTS_MOST], *next;
   char list[160];
   int parts = 0;
+  if (is_condition(key->text))
+    return dvi__scene_refuse(scene, key->span,
+                             "'%s' is a condition, and needs a part before it, as in 'boundary: "
+                             "{boundary: {%s: ..}}' for all of the boundary",
+                             key->text, key->text);
   for (int i = 0;
        s->mesh != NULL && parts < PARTS_MOST - 1 && (next = dvi_mesh_part_name(s->mesh, i)) != NULL;
        i++)

@@ -25,6 +25,13 @@ static bool is_subscript(const dvi__context *c, const char *name)
   return false;
 }
 
+/* Tell if a name is written as u_t for the rate of the field u. */
+static bool is_rate(const dvi__context *c, const char *name)
+{
+  const size_t length = strlen(name);
+  return c->scene->jets != NULL && length > 2 && strcmp(name + length - 2, "_t") == 0;
+}
+
 /* Complain of a name that is unknown, or not known yet. Expressions of parameters alone are read
  * before there are coordinates and definitions. */
 static dvi__value refuse_unknown_name(dvi__context *c, const dvi__expression *e)
@@ -38,6 +45,9 @@ static dvi__value refuse_unknown_name(dvi__context *c, const dvi__expression *e)
     return dvi__refused(dvi__refuse(c, e->span, "there is no '%s'; a derivative is d(%.*s,%s)",
                                     e->name, (int)(strrchr(e->name, '_') - e->name), e->name,
                                     strrchr(e->name, '_') + 1));
+  if (is_rate(c, e->name))
+    return dvi__refused(dvi__refuse(c, e->span, "there is no '%s'; a rate is %.*s'", e->name,
+                                    (int)strlen(e->name) - 2, e->name));
   for (int k = 0; k < 3; k++) {
     const dvi__tree *names = dvi__tree_find(c->scene->tree, section[k]);
     if (names == NULL || names->kind != DVI__MAPPING || dvi__tree_find(names, e->name) == NULL)

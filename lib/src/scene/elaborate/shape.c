@@ -289,6 +289,9 @@ static dvi__value no_function(const dvi__context *c, const dvi__expression *call
 {
   const dvi__span where = {call->span.first, strlen(call->name)};
   const dvi__name *name = dvi__names_find(&c->scene->names, call->name);
+  if (name == NULL && c->scene->jets != NULL && strcmp(call->name, "diff") == 0)
+    return dvi__refused(dvi__refuse(c, where, "there is no 'diff'; write d(u,%s), or u' for a rate",
+                                    c->scene->jets->axis[0]));
   const char *what = name != NULL ? dvi__sort_name(name->sort) : "number"; /* t, pi, an index */
   if (name == NULL && !dvi__is_word(call->name) && dvi__index_find(c, call->name) == NULL)
     return dvi__refused(dvi__names_unknown(&c->scene->names, &c->scene->arena, c->scene->complaint,
