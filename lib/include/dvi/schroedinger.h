@@ -163,7 +163,8 @@ dvi_status dvi_schroedinger_modes(const dvi_schroedinger *equation, int count, d
  *  @param[out] energy  as of dvi_schroedinger_values. May be NULL
  *  @param[out] psi     [functions]. May be NULL
  *  @retval DVI_BAD_ARGUMENT   an argument is missing, or the norm is not above 0 and finite
- *  @retval DVI_NOT_CONVERGED  there is no such state on the way: attraction may make it collapse
+ *  @retval DVI_NOT_CONVERGED  there is no such state on the way: attraction may make it collapse,
+ *                             or another state have less energy than the one that is followed
  *  @retval (others)           as dvi_schroedinger_modes
  *
  *  Sources: Bao and Cai 2013, sec. 3; docs/fields/schroedinger.md. */
