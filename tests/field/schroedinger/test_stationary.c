@@ -377,7 +377,7 @@ static int two_wells(int64_t count, double t, const double *x, double *V, void *
 }
 
 /* With little attraction the ground state is in both wells. With more, states in one have less
- * energy: minimising E by BFGS from one well gives 0.88817 for beta = -0.1, while the even state has
+ * energy: minimising E by BFGS from one well gives 0.88817 for beta = -0.1, and the even state has
  * 0.88828. */
 START_TEST(states_that_attraction_splits_are_no_ground_states)
 {

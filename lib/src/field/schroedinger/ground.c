@@ -195,8 +195,8 @@ static int attracts(const dvi_schroedinger *s)
   return s->beta != NULL && k < s->points;
 }
 
-/* Refuse a state whose second variation H + 2 beta psi^2 - mu has two negative eigenvalues. Of their
- * directions one at least is tangent to the sphere: attraction has let the state of least energy
+/* Refuse a state whose second variation H + 2 beta psi^2 - mu has two negative eigenvalues. One of
+ * their directions at least is tangent to the sphere: attraction has let the state of least energy
  * leave this one, to one side of a double well, say. Without attraction E has one minimum. */
 static dvi_status check_minimum(const ground *g)
 {
