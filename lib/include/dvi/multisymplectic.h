@@ -94,7 +94,8 @@ extern "C" {
  *
  *  In general it is dt^2 lambda <= 4/(1 - 4 a_t) with the largest eigenvalue lambda of stiffness
  *  against mass in a cell, which bounds that of the lattice. It is found from the constant second
- *  derivatives of l. Those that vary do not count. a_t = 1/4 is stable for all steps.
+ *  derivatives of l and from springs at the boundary (robin). Those that vary do not count. a_t =
+ *  1/4 is stable for all steps.
  *
  *  @retval DVI_BAD_ARGUMENT     an argument is not as described. A step is beyond the bound, which
  *                               dvi_last_error() has. A mass has a zero mode: a weight 1/4 in space

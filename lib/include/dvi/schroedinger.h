@@ -118,7 +118,8 @@ const char *dvi_schroedinger_method_name(int i);
 /** Create a march (dvi/march.h). Its form A is psi [2*functions], and it has no other forms.
  *
  *  Its bound (dvi_march_facts) is infinite, but for split with an interaction on fourier. Steps
- *  above pi hbar over the largest kinetic energy let resonances of modes grow there.
+ *  above pi hbar over the largest kinetic energy T let resonances of modes grow there. The bound is
+ *  that of a weak wave: beside repulsion it is pi hbar/(T + beta |psi|^2) with the wave's density.
  *
  *  It makes whole steps. Between two of them it shows a shorter step from the earlier one, beside
  *  the state. A start leaves out what it has of fixed functions. Observables are the members of
@@ -163,7 +164,8 @@ dvi_status dvi_schroedinger_modes(const dvi_schroedinger *equation, int count, d
  *  @param[out] energy  as of dvi_schroedinger_values. May be NULL
  *  @param[out] psi     [functions]. May be NULL
  *  @retval DVI_BAD_ARGUMENT   an argument is missing, or the norm is not above 0 and finite
- *  @retval DVI_NOT_CONVERGED  there is no such state on the way: attraction may make it collapse
+ *  @retval DVI_NOT_CONVERGED  there is no such state on the way: attraction may make it collapse,
+ *                             or another state have less energy than the one that is followed
  *  @retval (others)           as dvi_schroedinger_modes
  *
  *  Sources: Bao and Cai 2013, sec. 3; docs/fields/schroedinger.md. */

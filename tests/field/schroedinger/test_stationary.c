@@ -369,6 +369,31 @@ START_TEST(attraction_makes_a_soliton)
 }
 END_TEST
 
+static int two_wells(int64_t count, double t, const double *x, double *V, void *user)
+{
+  (void)t, (void)user;
+  for (int64_t i = 0; i < count; i++) V[i] = (x[i] * x[i] - 4) * (x[i] * x[i] - 4) / 8;
+  return 0;
+}
+
+/* With little attraction the ground state is in both wells. With more, states in one have less
+ * energy: minimising E by BFGS from one well gives 0.88817 for beta = -0.1, and the even state has
+ * 0.88828. */
+START_TEST(states_that_attraction_splits_are_no_ground_states)
+{
+  static const char *const kinds[] = {"fem:degree=4,cells=40", "fourier:modes=40"};
+  double energy = 0;
+  quantum q = quantum_on_line(kinds[_i], -6, 6, _i, two_wells, -0.02);
+  ck_assert_int_eq(dvi_schroedinger_ground(q.equation, 1, NULL, &energy, NULL), DVI_OK);
+  ck_assert(energy > 0.8882 && energy < 0.9004);
+  free_quantum(&q);
+  q = quantum_on_line(kinds[_i], -6, 6, _i, two_wells, -0.1);
+  ck_assert_int_eq(dvi_schroedinger_ground(q.equation, 1, NULL, &energy, NULL), DVI_NOT_CONVERGED);
+  check_words("less energy");
+  free_quantum(&q);
+}
+END_TEST
+
 SUITE(stationary)
 {
   tcase_add_test(tests, energies_have_the_digits_of_independent_computations);
@@ -387,4 +412,5 @@ SUITE(stationary)
   tcase_add_test(tests, condensates_turn_by_their_chemical_potential);
   tcase_add_test(tests, norm_scales_the_interaction);
   tcase_add_test(tests, attraction_makes_a_soliton);
+  tcase_add_loop_test(tests, states_that_attraction_splits_are_no_ground_states, 0, 2);
 }

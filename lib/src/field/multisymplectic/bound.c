@@ -19,6 +19,7 @@ typedef struct cell_matrices {
   int n;
   double *K, *M, *before, *lambda, *X;
   double *kinetic; /* [points][components*components] */
+  int64_t *taken;  /* [conditions] points of fluxes in the cells before */
   double largest;
 } cell_matrices;
 
@@ -32,7 +33,8 @@ static dvi_status allocate(const dvi__lattice *lattice, cell_matrices *m)
   m->lambda = DVI_NEW(double, n);
   m->X = DVI_NEW(double, n *n);
   m->kinetic = DVI_NEW(double, (size_t)lattice->points *components *components);
-  if (m->K == NULL || m->before == NULL || m->lambda == NULL || m->X == NULL || m->kinetic == NULL)
+  m->taken = DVI_NEW(int64_t, (size_t)lattice->conditions + 1);
+  if (!m->K || !m->before || !m->lambda || !m->X || !m->kinetic || !m->taken)
     return dvi__fail(DVI_NO_MEMORY, "multisymplectic: no memory for matrices of cells");
   m->M = m->K + n * n;
   return DVI_OK;
@@ -45,6 +47,7 @@ static void clear(cell_matrices *m)
   dvi__release(m->lambda);
   dvi__release(m->X);
   dvi__release(m->kinetic);
+  dvi__release(m->taken);
 }
 
 /* Whether the rates enter by a constant matrix. */
@@ -128,6 +131,7 @@ static dvi_status look_at_cell(const dvi__lattice *lattice, int64_t cell, cell_m
   memset(m->kinetic, 0, (size_t)lattice->points * components * components * sizeof *m->kinetic);
   for (int i = 0; i < lattice->parts; i++)
     if (!all_vary(&lattice->part[i])) DVI_TRY(add_part(lattice, &lattice->part[i], cell, m));
+  dvi__lattice_add_fluxes_of_cell(lattice, cell, m->taken, m->K);
   if (cell > 0 && memcmp(m->K, m->before, both) == 0) return DVI_OK;
   memcpy(m->before, m->K, both);
   DVI_TRY(check_kinetic(lattice, cell, m));

@@ -163,3 +163,56 @@ void dvi__lattice_add_matrix_of_fluxes(const dvi__lattice *lattice, double *valu
       }
   }
 }
+
+/* ---- cells ---- */
+
+/* Return the corner of a cell at a vertex, or the number of corners. */
+static int corner_at(const dvi__lattice *lattice, int64_t cell, int64_t vertex)
+{
+  int k = 0;
+  while (k < lattice->corners && lattice->corner[cell * lattice->corners + k] != vertex) k++;
+  return k;
+}
+
+/* Tell if all corners of a point's face are those of a cell. */
+static int is_of_cell(const dvi__lattice *lattice, const dvi__lattice_condition *c, int64_t point,
+                      int64_t cell)
+{
+  for (int k = 0; k < c->corners; k++) {
+    const int64_t vertex = c->place[point * c->corners + k] % lattice->vertices;
+    if (corner_at(lattice, cell, vertex) == lattice->corners) return 0;
+  }
+  return 1;
+}
+
+static void add_point_to_cell(const dvi__lattice *lattice, const dvi__lattice_condition *c,
+                              int64_t point, int64_t cell, double *K)
+{
+  const int corners = lattice->corners, n = corners * lattice->components;
+  int at[DVI__CORNERS];
+  for (int k = 0; k < c->corners; k++) {
+    const int64_t place = c->place[point * c->corners + k];
+    at[k] = (int)(place / lattice->vertices) * corners +
+            corner_at(lattice, cell, place % lattice->vertices);
+    if (lattice->unknown[place] < 0) at[k] = -1;
+  }
+  for (int i = 0; i < c->corners; i++)
+    for (int j = 0; j < c->corners; j++)
+      if (at[i] >= 0 && at[j] >= 0)
+        K[at[j] * n + at[i]] += c->declared.robin * c->weight[point] *
+                                c->shape[point * c->corners + i] * c->shape[point * c->corners + j];
+}
+
+/* Points stand component by component, and each has those of cells in their order. */
+void dvi__lattice_add_fluxes_of_cell(const dvi__lattice *lattice, int64_t cell, int64_t *taken,
+                                     double *K)
+{
+  for (int i = 0; i < lattice->conditions; i++) {
+    const dvi__lattice_condition *c = &lattice->condition[i];
+    const int copies = c->declared.component < 0 ? lattice->components : 1;
+    const int64_t count = c->count / copies;
+    if (c->declared.kind == DVI_FIXED || !(c->declared.robin > 0)) continue;
+    for (; taken[i] < count && is_of_cell(lattice, c, taken[i], cell); taken[i]++)
+      for (int k = 0; k < copies; k++) add_point_to_cell(lattice, c, k * count + taken[i], cell, K);
+  }
+}

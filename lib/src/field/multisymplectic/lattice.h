@@ -182,6 +182,11 @@ dvi_status dvi__row_add_energy_of_fluxes(const dvi__lattice *lattice, const dvi_
 
 void dvi__lattice_add_matrix_of_fluxes(const dvi__lattice *lattice, double *values);
 
+/* Add what they add to the stiffness K of a cell, where it is positive. Cells come in their order:
+ * taken [conditions] counts points and is 0 for the first one. */
+void dvi__lattice_add_fluxes_of_cell(const dvi__lattice *lattice, int64_t cell, int64_t *taken,
+                                     double *K);
+
 /* Set p [size] to the momenta of a level u[0] with a rate. */
 dvi_status dvi__row_momenta(const dvi__lattice *lattice, const dvi__row *row, double *p);
 

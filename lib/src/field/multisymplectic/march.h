@@ -32,8 +32,8 @@ void dvi__lattice_march_clear(dvi__lattice_march *m);
 dvi_status dvi__lattice_factor(dvi__lattice_march *m, double t, const double *lower,
                                const double *upper);
 
-/* Keep the place of the matrix, unless one is kept. Compute the matrix there if one is, and keep none
- * then. If that fails the next step tries again: what fails changes no bit of later steps. */
+/* Keep the place of the matrix, unless one is kept. Compute the matrix there if one is, and keep
+ * none then. If that fails the next step tries again: what fails changes no bit of later steps. */
 void dvi__lattice_keep_factor(dvi__lattice_march *m);
 dvi_status dvi__lattice_restore_factor(dvi__lattice_march *m);
 

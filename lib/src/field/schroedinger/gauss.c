@@ -249,8 +249,8 @@ static dvi_status refuse_step(const dvi__gauss *g, double t)
                    g->h, t);
 }
 
-/* Tell if the next correction would be no rounding of z, or corrections are roundings that no longer
- * shrink. */
+/* Tell if the next correction would be below a rounding of z, or if corrections are roundings that
+ * no longer shrink. */
 static int is_settled(double change, double before, double size)
 {
   return change * change <= 1e-17 * size * before || (change <= 1e-13 * size && change >= before);

@@ -186,6 +186,39 @@ static dvi_status follow(ground *g)
       done);
 }
 
+/* ---- the kind of stationary point ---- */
+
+static int attracts(const dvi_schroedinger *s)
+{
+  int64_t k = 0;
+  while (s->beta != NULL && k < s->points && !(s->beta[k] < 0)) k++;
+  return s->beta != NULL && k < s->points;
+}
+
+/* Refuse a state whose second variation H + 2 beta psi^2 - mu has two negative eigenvalues. One of
+ * their directions at least is tangent to the sphere: attraction has let the state of least energy
+ * leave this one, to one side of a double well, say. Without attraction E has one minimum. */
+static dvi_status check_minimum(const ground *g)
+{
+  enum { LOWEST = 2 };
+  const dvi_schroedinger *s = g->s;
+  dvi_schroedinger varied = *s;
+  double energy[LOWEST], *z = DVI_NEW(double, LOWEST * s->free);
+  if (z == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "schroedinger: no memory for %lld functions",
+                     (long long)s->free);
+  varied.still = g->V;
+  const dvi_status status = dvi__schroedinger_lowest(&varied, LOWEST, energy, z);
+  dvi__release(z);
+  DVI_TRY(status);
+  if (energy[1] >= -1e-8 * fabs(energy[0])) return DVI_OK;
+  return dvi__fail(DVI_NOT_CONVERGED,
+                   "schroedinger: attraction has let another state of less energy leave the one "
+                   "with mu = %g, which is that without interaction, followed; take a potential "
+                   "that prefers a place",
+                   g->mu);
+}
+
 /* ---- the state ---- */
 
 static dvi_status allocate(ground *g)
@@ -221,9 +254,14 @@ static dvi_status find(ground *g)
 {
   DVI_TRY(allocate(g));
   DVI_TRY(dvi__schroedinger_lowest(g->s, 1, &g->mu, g->z));
-  if (g->s->beta != NULL) return follow(g);
-  settle(g);
-  return DVI_OK;
+  if (g->s->beta == NULL) {
+    settle(g);
+    return DVI_OK;
+  }
+  DVI_TRY(follow(g));
+  if (!attracts(g->s) || g->s->free < 4) return DVI_OK;
+  find_potential(g);
+  return check_minimum(g);
 }
 
 dvi_status dvi_schroedinger_ground(const dvi_schroedinger *equation, double norm, double *mu,
