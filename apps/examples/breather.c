@@ -31,14 +31,15 @@ static double breather(double t, double x)
 
 static dvi_status follow(dvi_march *march, const double *x, double step)
 {
+  const double t = (double)STEPS * step;
   double u[CELLS], energy, later, error = 0;
   dvi_status status = dvi_march_observe(march, 0, &energy);
-  if (!status) status = dvi_march_advance(march, STEPS * step);
+  if (!status) status = dvi_march_advance(march, t);
   if (!status) status = dvi_march_sample(march, DVI_FORM_A, 0, NULL, u);
   if (!status) status = dvi_march_observe(march, 0, &later);
   if (status) return status;
-  for (int i = 0; i < CELLS; i++) error = fmax(error, fabs(u[i] - breather(STEPS * step, x[i])));
-  printf("t = %g, largest error %.2e\n", STEPS * step, error);
+  for (int i = 0; i < CELLS; i++) error = fmax(error, fabs(u[i] - breather(t, x[i])));
+  printf("t = %g, largest error %.2e\n", t, error);
   printf("energy %.6f, later %.6f\n", energy, later);
   return DVI_OK;
 }

@@ -67,14 +67,14 @@ static int start_rate(int64_t count, const double *x, double *rate, void *user)
 /* Follow the field, and print its value at the origin. */
 static dvi_status follow(dvi_integrator *integrator, const dvi_density *field, double *U)
 {
+  const int value[1] = {0};
   const double origin = 0;
   double u = 0, energy = 0, first = 0;
   dvi_status status = dvi_integrator_invariant(integrator, 0, &first);
   for (int n = 0; n <= 800 && status == DVI_OK; n++) {
     if (n % 100 == 0) {
       status = dvi_density_lift(field, 0, dvi_integrator_q(integrator), U);
-      if (!status)
-        status = dvi_space_evaluate(dvi_density_space(field), &(int){0}, U, 1, &origin, &u);
+      if (!status) status = dvi_space_evaluate(dvi_density_space(field), value, U, 1, &origin, &u);
       if (!status) status = dvi_integrator_invariant(integrator, 0, &energy);
       if (!status)
         printf("t = %2.0f: u(0) = %9.6f, energy %.9f\n", dvi_integrator_time(integrator), u,
@@ -94,28 +94,23 @@ int main(void)
       {.kind = DVI_DENSITY_KINETIC, .variable = &rate, .variables = 1, .density = motion},
       {.kind = DVI_DENSITY_QUADRATIC, .variable = &slope, .variables = 1, .density = strain},
       {.kind = DVI_DENSITY_POTENTIAL, .variable = &value, .variables = 1, .density = wells}};
+  const dvi_space_options elements = {.size = sizeof elements,
+                                      .kind = "fem:degree=4,cells=160,lumped=yes",
+                                      .axis = &line,
+                                      .axes = 1};
+  dvi_density_terms terms = {.size = sizeof terms, .components = 1, .part = parts, .parts = 3};
   dvi_space *space = NULL;
   dvi_density *field = NULL;
   dvi_system *system = NULL;
   dvi_integrator *integrator = NULL;
   double *U = NULL;
-  dvi_status status = dvi_space_create(&(dvi_space_options){.size = sizeof(dvi_space_options),
-                                                            .kind = "fem:degree=4,cells=160,"
-                                                                    "lumped=yes",
-                                                            .axis = &line,
-                                                            .axes = 1},
-                                       &space);
+  dvi_status status = dvi_space_create(&elements, &space);
   const size_t n = (size_t)dvi_space_functions(space);
   if (!status && !(U = (double *)calloc(4 * n, sizeof *U))) status = DVI_NO_MEMORY;
   if (!status) status = dvi_space_interpolate(space, start, NULL, U);
   if (!status) status = dvi_space_interpolate(space, start_rate, NULL, U + n);
-  if (!status)
-    status = dvi_density_create(&(dvi_density_terms){.size = sizeof(dvi_density_terms),
-                                                     .space = space,
-                                                     .components = 1,
-                                                     .part = parts,
-                                                     .parts = 3},
-                                &field);
+  terms.space = space;
+  if (!status) status = dvi_density_create(&terms, &field);
   if (!status) status = dvi_density_project(field, U, U + n, U + 2 * n, NULL, U + 3 * n);
   if (!status) status = dvi_density_system(field, &system);
   if (!status) status = dvi_integrator_create(system, "galerkin:degree=3", &integrator);

@@ -139,12 +139,9 @@ static dvi_density *by_hand(long n, double length)
   dvi_density *density = NULL;
   (void)snprintf(kind, sizeof kind, "fem:degree=1,cells=%ld,lumped=yes", n);
   need(dvi_space_create(&options, &space));
-  need(dvi_density_create(&(dvi_density_terms){.size = sizeof(dvi_density_terms),
-                                               .space = space,
-                                               .components = 1,
-                                               .part = parts,
-                                               .parts = 3},
-                          &density));
+  const dvi_density_terms terms = {
+      .size = sizeof terms, .space = space, .components = 1, .part = parts, .parts = 3};
+  need(dvi_density_create(&terms, &density));
   dvi_space_destroy(&space);
   return density;
 }
@@ -212,7 +209,7 @@ LANES static void bare_steps(const bare *b, long steps)
 {
   const long n = b->n;
   const double h = b->h, stiffness = b->stiffness, weight = b->weight, by = h / b->mass;
-  double *restrict q = b->q, *restrict p = b->p;
+  double *q = b->q, *p = b->p;
   for (long s = 0; s < steps; s++) {
     p[0] -= h * bare_force(b, n - 1, 0, 1);
     for (long i = 1; i < n - 1; i++)
@@ -318,7 +315,7 @@ static double transform_pair(const dvi_space *space)
   for (int64_t i = 0; i < dvi_space_functions(space); i++) U[i] = 1 / (1 + (double)(i * i));
   const double start = seconds();
   for (int i = 0; i < TIMES; i++) need(dvi_space_apply(space, order, U, values));
-  const double taken = 2 * (seconds() - start) / TIMES;
+  const double taken = 2 * (seconds() - start) / (double)TIMES;
   free(U);
   free(values);
   return taken;

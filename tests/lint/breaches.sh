@@ -33,7 +33,9 @@ clean() {
     echo '```'
     echo 'See [the guide](docs/guide.md#two-words), Euler1744.'
   } >README.md
-  for program in shapes:shapes fields/waves:drum fields/forms:hole fields/maxwell:cavity; do
+  for program in shapes:shapes fields/waves:drum fields/forms:hole fields/maxwell:cavity \
+    fields/multiscale:rapid_rod fields/moving:kink fields/multisymplectic:breather \
+    fields/schroedinger:tunnel fields/densities:collision; do
     example=apps/examples/${program#*:}.c
     cp apps/examples/pendulum.c "$example"
     { echo '# A page'; echo '```c'; cat "$example"; echo '```'; } >"docs/${program%:*}.md"

@@ -25,12 +25,16 @@ typedef struct dvi_reduced_angle {
 /** Take the quarter turns from a plain angle. */
 static inline dvi_reduced_angle dvi_reduce_angle(double x)
 {
-  static const double round = 0x1.8p52, quarters = 0x1.45f306dc9c883p-1,
-                      part[] = {0x1.921fb544p0, 0x1.0b4611a6p-34, 0x1.3198a2e037073p-69};
+  /* 1.5 2^52, 2/pi, and pi/2 in parts of 33, 33 and 53 bits */
+  static const double round = 6755399441055744.0, quarters = 6.36619772367581382433e-01,
+                      part[] = {1.57079632673412561417e+00, 6.07710050630396597660e-11,
+                                2.02226624879595063154e-21};
   const double counted = x * quarters + round, n = counted - round, first = x - n * part[0],
                second = n * part[1], upper = first - second,
-               third = n * part[2] - ((first - upper) - second), r = upper - third;
-  dvi_reduced_angle angle = {.r = r, .tail = (upper - r) - third};
+               third = n * part[2] - ((first - upper) - second);
+  dvi_reduced_angle angle;
+  angle.r = upper - third;
+  angle.tail = (upper - angle.r) - third;
   memcpy(&angle.quarters, &counted, sizeof angle.quarters);
   return angle;
 }
@@ -40,7 +44,7 @@ static inline dvi_reduced_angle dvi_reduce_angle(double x)
 static inline int dvi_angle_is_plain(double x)
 {
   const double r = fabs(dvi_reduce_angle(x).r);
-  return (fabs(x) <= 0x1p19) & ((r >= 0x1p-40) | (fabs(x) < 0.5));
+  return (fabs(x) <= 524288.0) & ((r >= 1e-12) | (fabs(x) < 0.5));
 }
 
 /** Compute the sine of r + tail, |r| up to pi/4. */
