@@ -112,7 +112,7 @@ START_TEST(coefficients_that_vary_have_a_potential_of_their_own)
   density_field field = make_field("fourier:modes=4,points=16", 1, parts, 2);
   dvi_system_terms terms;
   dvi_matrix K;
-  double energy, eigenvalue[2];
+  double watched[2], eigenvalue[2];
   check_density(&field, 1e-6);
   ck_assert_int_eq(dvi_density_system_terms(field.density, &terms), DVI_OK);
   ck_assert_int_eq(terms.potential_count, 2);
@@ -122,8 +122,8 @@ START_TEST(coefficients_that_vary_have_a_potential_of_their_own)
    * 2 (pi + 4 pi)/2 + int cos x (-4 sin x cos 2x + ..)/2 = 5 pi */
   memset(field.q, 0, (size_t)field.n * sizeof(double));
   field.q[1] = field.q[4] = sqrt(pi);
-  ck_assert_int_eq(dvi_system_invariants(field.system, 0, field.q, field.p, &energy), DVI_OK);
-  ck_assert_double_eq_tol(energy, 5 * pi, 1e-12);
+  ck_assert_int_eq(dvi_system_invariants(field.system, 0, field.q, field.p, watched), DVI_OK);
+  ck_assert_double_eq_tol(watched[0], 5 * pi, 1e-12);
   const dvi_modes_options two = {.size = sizeof two, .count = 2};
   ck_assert_msg(dvi_density_modes(field.density, &two, NULL, eigenvalue, NULL) == DVI_OK, "%s",
                 dvi_last_error());

@@ -109,7 +109,7 @@ START_TEST(smooth_waves_keep_the_order_at_large_frequencies)
                                       method_spec("galerkin:degree=%d", last ? 12 : degree));
     advance(run, 1.0 / steps, steps);
     ck_assert_int_eq(read_counters(run).fixed_points, steps);
-    memcpy(q[level], dvi_integrator_q(run), sizeof q[level]);
+    memcpy(q[level], dvi_integrator_q(run), (size_t)waves.n * sizeof(double));
     dvi_integrator_destroy(&run);
   }
   for (int level = 0; level < LEVELS; level++)
@@ -224,7 +224,7 @@ START_TEST(every_instruction_set_finds_the_same_bits)
     dvi__lanes_choose(level);
     dvi_integrator *run = start_waves(&waves, methods[_i]);
     advance(run, 0.3, 20);
-    memcpy(q[level], dvi_integrator_q(run), sizeof q[level]);
+    memcpy(q[level], dvi_integrator_q(run), (size_t)waves.n * sizeof(double));
     dvi_integrator_destroy(&run);
     ck_assert_mem_eq(q[level], q[0], sizeof q[0]);
   }

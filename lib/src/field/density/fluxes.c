@@ -105,9 +105,10 @@ static dvi_status allocate_points(const dvi_density *density, int64_t points,
 {
   part->points = points;
   part->own = DVI_NEW(double, (density->dimension + 1) * points);
+  if (part->own == NULL) return no_memory();
   part->x = part->own;
   part->weight = part->own + density->dimension * points;
-  return part->own != NULL ? DVI_OK : no_memory();
+  return DVI_OK;
 }
 
 static dvi_status make_sides(const dvi_density *density, const char *name, dvi__density_part *part)
