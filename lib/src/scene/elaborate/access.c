@@ -118,7 +118,7 @@ static bool member_of_two(const dvi__context *c, const dvi__coordinate *x,
   if (good && (row != NULL || column != NULL)) {
     *each = dvi__heap_take((size_t)c->elements, sizeof **each);
     good = *each != NULL || dvi__scene_no_memory(c->scene);
-    for (int e = 0; good && e < c->elements; e++)
+    for (int e = 0; *each != NULL && e < c->elements; e++)
       (*each)[e] = ((row != NULL ? row[e] : all_row) - 1) * x->columns +
                    (column != NULL ? column[e] : all_column);
   }
