@@ -118,9 +118,8 @@ DVI__EXPR_INLINE void sines_and_cosines(int width, const double *restrict angle,
   const int plain = dvi__count_plain_angles(width, angle);
   dvi__plain_sines(width, angle, sine, cosine);
   for (int k = 0; plain < width && k < width; k++) {
-    if (dvi_angle_is_plain(angle[k])) continue;
-    sine[k] = sin(angle[k]);
-    cosine[k] = cos(angle[k]);
+    sine[k] = dvi_sin(angle[k]);
+    cosine[k] = dvi_cos(angle[k]);
   }
 }
 
@@ -128,16 +127,14 @@ DVI__EXPR_INLINE void sines(int width, const double *restrict angle, double *res
 {
   const int plain = dvi__count_plain_angles(width, angle);
   dvi__plain_sine(width, 0, angle, sine);
-  for (int k = 0; plain < width && k < width; k++)
-    if (!dvi_angle_is_plain(angle[k])) sine[k] = sin(angle[k]);
+  for (int k = 0; plain < width && k < width; k++) sine[k] = dvi_sin(angle[k]);
 }
 
 DVI__EXPR_INLINE void cosines(int width, const double *restrict angle, double *restrict cosine)
 {
   const int plain = dvi__count_plain_angles(width, angle);
   dvi__plain_sine(width, 1, angle, cosine);
-  for (int k = 0; plain < width && k < width; k++)
-    if (!dvi_angle_is_plain(angle[k])) cosine[k] = cos(angle[k]);
+  for (int k = 0; plain < width && k < width; k++) cosine[k] = dvi_cos(angle[k]);
 }
 
 /* Return x where a condition holds. Its operands are read before anything is decided. gcc 12 takes
