@@ -135,6 +135,8 @@ refused() {
   says err "$3" "the reason of $1"
 }
 refused curved 's/degree=1/degree=2/' 'cells that move are linear' 4:8
+refused curved 's/degree=1/degree=12/' 'cells that move are linear' 4:8
+refused rapid 's/fem:degree=1/msfem:fine=4/' 'cells that move are linear' 4:8
 refused plane 's/^domain.*/domain: {x: [0, 1], y: [0, 1]}/' 'on a domain of one axis' 9:9
 refused word 's/^moving.*/moving: slowly/' "is yes, no, or tells how" 9:9
 refused key 's/kappa/kapa/' "kappa" 9:20

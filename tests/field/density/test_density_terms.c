@@ -211,7 +211,20 @@ static int unit_flux(int64_t count, double t, const double *x, double *datum, vo
   return 0;
 }
 
-/* The sum of the loads of a flux of 1 is the size of the boundary. */
+/* The sum of the loads of a flux of 1 through a part is its size. */
+static double size_of_part(dvi_space *space, const char *part)
+{
+  const dvi_density_condition flux = {.part = part, .datum = unit_flux};
+  density_field field = make_density(space, &kinetic_part, 1, &flux, 1);
+  dvi_system_terms terms;
+  double sum = 0;
+  ck_assert_int_eq(dvi_density_system_terms(field.density, &terms), DVI_OK);
+  ck_assert_int_eq(terms.potentials[0].gradient(0, field.q, field.p, terms.potentials[0].user), 0);
+  for (int64_t i = 0; i < field.n; i++) sum -= field.p[i];
+  end_density(&field);
+  return sum;
+}
+
 static double size_of_boundary(const char *kind, dvi_generator_options options)
 {
   dvi_mesh *mesh = NULL;
@@ -221,15 +234,7 @@ static double size_of_boundary(const char *kind, dvi_generator_options options)
   const dvi_space_options of = {.size = sizeof of, .kind = kind, .mesh = mesh};
   ck_assert_msg(dvi_space_create(&of, &space) == DVI_OK, "%s", dvi_last_error());
   dvi_mesh_destroy(&mesh);
-  const dvi_density_condition flux = {.part = "boundary", .datum = unit_flux};
-  density_field field = make_density(space, &kinetic_part, 1, &flux, 1);
-  dvi_system_terms terms;
-  double sum = 0;
-  ck_assert_int_eq(dvi_density_system_terms(field.density, &terms), DVI_OK);
-  ck_assert_int_eq(terms.potentials[0].gradient(0, field.q, field.p, terms.potentials[0].user), 0);
-  for (int64_t i = 0; i < field.n; i++) sum -= field.p[i];
-  end_density(&field);
-  return sum;
+  return size_of_part(space, "boundary");
 }
 
 /* A unit square, a cylinder of it, and a unit cube. */
@@ -243,6 +248,24 @@ START_TEST(fluxes_go_through_all_facets)
     ck_assert_double_eq_tol(size_of_boundary(degrees[i], square), 4, 1e-12);
     ck_assert_double_eq_tol(size_of_boundary(degrees[i], cylinder), 2, 1e-12);
     ck_assert_double_eq_tol(size_of_boundary(degrees[i], cube), 6, 1e-12);
+  }
+}
+END_TEST
+
+/* 5 cells of 0.6 from 0 add up to a little more than 3, and 13 of 10/13 to more than 10. */
+START_TEST(fluxes_reach_the_ends_of_sides)
+{
+  static const struct {
+    double length;
+    const char *kind;
+  } line[] = {{3, "fem:degree=2,cells=5,lumped=yes"}, {10, "fem:degree=1,cells=13,lumped=yes"}};
+  for (int i = 0; i < 2; i++) {
+    const dvi_axis axes[] = {{.to = line[i].length, .kind = line[i].kind},
+                             {.to = 1, .kind = "fem:degree=1,cells=3,lumped=yes"}};
+    const dvi_space_options of = {.size = sizeof of, .axis = axes, .axes = 2};
+    dvi_space *space = NULL;
+    ck_assert_msg(dvi_space_create(&of, &space) == DVI_OK, "%s", dvi_last_error());
+    ck_assert_double_eq_tol(size_of_part(space, "top"), line[i].length, 1e-13);
   }
 }
 END_TEST
@@ -321,6 +344,7 @@ SUITE(density_terms)
   tcase_add_test(tests, triangles_hold_a_saddle);
   tcase_add_test(tests, fluxes_pull_at_triangles);
   tcase_add_test(tests, fluxes_go_through_all_facets);
+  tcase_add_test(tests, fluxes_reach_the_ends_of_sides);
   tcase_add_test(tests, steps_take_no_memory);
   tcase_add_test(tests, rooms_are_not_shared);
 }

@@ -95,6 +95,7 @@ typedef struct dvi__integral {
   int has_hessian;     /* full for Fourier spaces */
   int depends_on_time; /* also by data that move */
   int has_rate;        /* the derivative in time is known */
+  int takes_rates;     /* a part has rates among its variables */
   const dvi__csr
       *less; /* q.less q/2 is taken away, and q.load added, less a value. NULL for none */
   const double *load;

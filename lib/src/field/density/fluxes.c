@@ -70,15 +70,6 @@ static int64_t points_of_side(const dvi_space *space, int across)
   return points;
 }
 
-/* Give point i of an axis. */
-static double point_of_line(const dvi__line *line, int64_t i, double *weight)
-{
-  const int64_t cell = i / line->cell_points, k = i % line->cell_points;
-  const double from = line->node[cell], length = dvi__cell_width(line, cell);
-  *weight *= length * line->weight[k];
-  return from + length * line->place[k];
-}
-
 /* Fill in the points of a side from point `first` of the part on. */
 static void fill_side(const dvi_space *space, int across, int end, int64_t first,
                       dvi__density_part *part)
@@ -91,10 +82,11 @@ static void fill_side(const dvi_space *space, int across, int end, int64_t first
     for (int d = space->lines - 1; d >= 0; d--) {
       const int64_t along = points_along(space, across, d);
       const dvi__line *line = space->line + d;
-      x[d * part->points + first + i] = d != across
-                                            ? point_of_line(line, rest % along, weight + first + i)
-                                        : end == 0 ? line->from
-                                                   : line->to;
+      double factor = 1;
+      x[d * part->points + first + i] = d != across ? dvi__line_point(line, rest % along, &factor)
+                                        : end == 0  ? line->from
+                                                    : line->to;
+      weight[first + i] *= factor;
       rest /= along;
     }
   }

@@ -12,6 +12,7 @@
 #include "field/algebra/definite.h"
 #include "field/algebra/random.h"
 #include "field/density/density.h"
+#include "num/finite.h"
 
 /* Part of its terms that a sum of zero may leave. */
 static const double roundoff = 1e-11;
@@ -54,13 +55,6 @@ static dvi_status differentiate(const dvi_density *density, const double *q, con
   return dvi__density_refuse(failed, "a one-form");
 }
 
-static double largest(int64_t n, const double *x)
-{
-  double most = 0;
-  for (int64_t i = 0; i < n; i++) most = fmax(most, fabs(x[i]));
-  return most;
-}
-
 /* Tell if constants w of a component are in the kernel of Omega at a state, where alpha is
  * unchanged along w. room has 4 n numbers. */
 static dvi_status is_in_kernel(const dvi_density *density, int component, double *room, int *answer)
@@ -74,11 +68,11 @@ static dvi_status is_in_kernel(const dvi_density *density, int component, double
                                                    : 0;
   }
   DVI_TRY(differentiate(density, q, w, first));
-  const double of_gradient = largest(n, first);
+  const double of_gradient = dvi__largest((size_t)n, first);
   DVI_TRY(differentiate(density, q, NULL, second));
   for (int64_t i = 0; i < n; i++) q[i] += w[i];
   DVI_TRY(differentiate(density, q, NULL, first));
-  const double size = largest(n, second) + largest(n, first);
+  const double size = dvi__largest((size_t)n, second) + dvi__largest((size_t)n, first);
   double change = 0;
   for (int64_t i = 0; i < n; i++) change = fmax(change, fabs(first[i] - second[i]));
   *answer = of_gradient <= roundoff * size && change <= roundoff * size;

@@ -207,6 +207,8 @@ dvi_status dvi__integral_add(dvi__integral *integral, dvi__density_part *part)
     integral->part = DVI_NEW(dvi__density_part *, integral->density->parts);
   if (integral->part == NULL) return no_memory();
   integral->part[integral->parts++] = part;
+  for (int a = 0; a < part->given.variables; a++)
+    integral->takes_rates |= part->given.variable[a].rate != 0;
   if (!part->given.depends_on_time) return DVI_OK;
   integral->depends_on_time = 1;
   if (part->given.time_derivative == NULL) integral->has_rate = 0;
@@ -283,6 +285,17 @@ static void subtract_quadratic(const dvi__integral *integral, const dvi__density
       s->qq[i * K->rows + K->column[e]] -= K->value[e];
 }
 
+/* Evaluate the values that move, and those of their derivatives in time that are read. */
+static int find_moving(const dvi__integral *integral, const dvi__density_point *at,
+                       const dvi__density_sums *sums, double *room)
+{
+  const dvi_density *density = integral->density;
+  const int with_second = at->take_second || sums->rate != NULL,
+            with_rate = integral->takes_rates || with_second;
+  return dvi__density_moving(density, at->t, room, with_rate ? room + density->moving : NULL,
+                             with_second ? room + 2 * density->moving : NULL);
+}
+
 int dvi__integral_evaluate(const dvi__integral *integral, const dvi__density_point *where,
                            const dvi__density_sums *sums)
 {
@@ -296,9 +309,7 @@ int dvi__integral_evaluate(const dvi__integral *integral, const dvi__density_poi
     if (room == NULL) return DVI_NO_MEMORY;
   }
   set_sums(integral, &at, sums);
-  if (density->moving > 0)
-    failed = dvi__density_moving(density, at.t, room, room + density->moving,
-                                 room + 2 * density->moving);
+  if (density->moving > 0) failed = find_moving(integral, &at, sums, room);
   for (int p = 0; p < integral->parts && failed == 0; p++)
     failed = density->is_fourier
                  ? dvi__part_sum_by_transforms(integral, integral->part[p], &at, room, sums)

@@ -12,6 +12,7 @@
 #include "core/status.h"
 #include "field/algebra/definite.h"
 #include "field/density/density.h"
+#include "num/finite.h"
 
 enum { ITERATIONS = 60, HALVINGS = 12, FULL_MOST = 2000 /* coordinates of a full Hessian */ };
 
@@ -120,13 +121,6 @@ static double length_of(int64_t n, const double *x)
   return sqrt(sum);
 }
 
-static double largest(int64_t n, const double *x)
-{
-  double most = 0;
-  for (int64_t i = 0; i < n; i++) most = fmax(most, fabs(x[i]));
-  return most;
-}
-
 static dvi_status find_direction(search *s)
 {
   dvi__csr H = {0};
@@ -159,7 +153,7 @@ static void take_step(search *s, double part, double size)
   s->q = s->trial, s->trial = q;
   s->F = s->F_trial, s->F_trial = F;
   s->size = size;
-  s->length = part * largest(s->n, s->d) / s->scale;
+  s->length = part * dvi__largest((size_t)s->n, s->d) / s->scale;
 }
 
 /* Take one step. `is_done` tells that |F| falls no more, or q is right to roundoff. */
@@ -167,7 +161,8 @@ static dvi_status advance(search *s, int *is_done)
 {
   double part = 1, size;
   DVI_TRY(find_direction(s));
-  s->scale = fmax(s->scale, fmax(largest(s->n, s->q), largest(s->n, s->d)));
+  s->scale = fmax(s->scale,
+                  fmax(dvi__largest((size_t)s->n, s->q), dvi__largest((size_t)s->n, s->d)));
   for (int halving = 0; halving < HALVINGS; halving++, part /= 2) {
     DVI_TRY(try_step(s, part, &size));
     if (size < s->size * (1 - 1e-4 * part)) {
@@ -175,9 +170,9 @@ static dvi_status advance(search *s, int *is_done)
       *is_done = s->length <= 4 * DBL_EPSILON;
       return DVI_OK;
     }
-    if (largest(s->n, s->d) <= small_step * s->scale) break;
+    if (dvi__largest((size_t)s->n, s->d) <= small_step * s->scale) break;
   }
-  s->length = largest(s->n, s->d) / s->scale;
+  s->length = dvi__largest((size_t)s->n, s->d) / s->scale;
   *is_done = 1;
   return DVI_OK;
 }

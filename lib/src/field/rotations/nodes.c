@@ -33,12 +33,16 @@ static int is_held(const dvi_rotations *f, const int *place)
   return 0;
 }
 
-/* The volume of a node is half as long at the end of an axis. */
+/* Return the width of a node along an axis, which is half a cell at an end. */
+static double width_of(const dvi_rotations *f, const int *place, int d)
+{
+  return f->length[d] * (is_end(f, place, d, 0) || is_end(f, place, d, 1) ? 0.5 : 1);
+}
+
 static double volume_of(const dvi_rotations *f, const int *place)
 {
   double volume = 1;
-  for (int d = 0; d < f->axes; d++)
-    volume *= f->length[d] * (is_end(f, place, d, 0) || is_end(f, place, d, 1) ? 0.5 : 1);
+  for (int d = 0; d < f->axes; d++) volume *= width_of(f, place, d);
   return volume;
 }
 
@@ -125,7 +129,7 @@ static int find_edge(const dvi_rotations *f, int64_t node, int d, edge *found)
   if (is_end(f, place, d, 1)) return 0;
   double area = 1;
   for (int k = 0; k < f->axes; k++)
-    if (k != d) area *= f->length[k] * (is_end(f, place, k, 0) || is_end(f, place, k, 1) ? 0.5 : 1);
+    if (k != d) area *= width_of(f, place, k);
   const int last = place[d] == f->count[d] - 1;
   *found = (edge){.from = node,
                   .to = last ? node - stride * (f->count[d] - 1) : node + stride,

@@ -32,7 +32,7 @@ struct dvi__gauss {
   double complex lambda[MOST], X[MOST][MOST], inverse[MOST][MOST];
   dvi__shifted *solver;
   dvi__schroedinger_room room;
-  double *V;                  /* [points] */
+  double *V;                  /* [stages][points] if it depends on time */
   double *Z, *R, *mixed, *HZ; /* [stages][2*free] */
   double *stage;              /* [2*free] */
 };
@@ -121,7 +121,7 @@ static dvi_status make_room(dvi__gauss *g)
 {
   const int64_t n = 2 * g->s->free;
   DVI_TRY(dvi__schroedinger_make_room(g->s, &g->room));
-  g->V = DVI_NEW(double, g->s->points);
+  g->V = DVI_NEW(double, g->s->depends_on_time ? g->stages * g->s->points : 1);
   g->Z = DVI_NEW(double, (4 * g->stages + 1) * n);
   if (g->V == NULL || g->Z == NULL)
     return dvi__fail(DVI_NO_MEMORY, "schroedinger: no memory for %d stages of %lld functions",
@@ -182,18 +182,15 @@ dvi_status dvi__gauss_prepare(dvi__gauss *g, double h)
 /* ---- the step ---- */
 
 /* HZ_j = H(t_j,Psi_j) Psi_j. A potential that stands still is evaluated once. */
-static dvi_status act(dvi__gauss *g, double t, const double *z)
+static void act(dvi__gauss *g, const double *z)
 {
   const int64_t n = 2 * g->s->free;
-  const double *V = g->s->depends_on_time ? g->V : g->s->still;
   for (int j = 0; j < g->stages; j++) {
-    const double *Z = g->Z + j * n;
-    if (g->s->depends_on_time)
-      DVI_TRY(dvi__schroedinger_potential(g->s, t + g->node[j] * g->h, g->V));
+    const double *Z = g->Z + j * n,
+                 *V = g->s->depends_on_time ? g->V + j * g->s->points : g->s->still;
     for (int64_t i = 0; i < n; i++) g->stage[i] = z[i] + Z[i];
     dvi__schroedinger_act(g->s, V, 1, 2, g->stage, g->HZ + j * n, &g->room);
   }
-  return DVI_OK;
 }
 
 /* R_i = M Z_i + i h/hbar sum_j a_ij HZ_j, with i (x + iy) = -y + ix. */
@@ -265,7 +262,7 @@ static dvi_status iterate(dvi__gauss *g, double t, const double *z)
   int settled = 0;
   memset(g->Z, 0, (size_t)(2 * g->stages * g->s->free) * sizeof *g->Z);
   for (int i = 0; i < ITERATIONS || settled > 0; i++) {
-    DVI_TRY(act(g, t, z));
+    act(g, z);
     find_residual(g);
     const double change = correct(g);
     if (i > 0 && settled == 0 && is_settled(change, before, size)) settled = i;
@@ -282,6 +279,8 @@ dvi_status dvi__gauss_step(dvi__gauss *g, double t, double *z, double *compensat
   if (g->s->depends_on_time) {
     DVI_TRY(dvi__schroedinger_potential(g->s, t + 0.5 * g->h, g->V));
     DVI_TRY(factor(g, g->V));
+    for (int j = 0; j < g->stages; j++)
+      DVI_TRY(dvi__schroedinger_potential(g->s, t + g->node[j] * g->h, g->V + j * g->s->points));
   }
   DVI_TRY(iterate(g, t, z));
   for (int64_t i = 0; i < n; i++) {

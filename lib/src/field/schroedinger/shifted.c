@@ -80,9 +80,11 @@ static double middle_of(const dvi_schroedinger *s, const double *V)
 dvi_status dvi__shifted_factor(dvi__shifted *a, const double complex *c, const double *V)
 {
   const dvi_schroedinger *s = a->s;
-  a->middle = middle_of(s, V);
   for (int j = 0; j < a->shifts; j++) a->c[j] = c[j];
-  if (s->is_fourier) return DVI_OK;
+  if (s->is_fourier) {
+    a->middle = middle_of(s, V);
+    return DVI_OK;
+  }
   dvi__schroedinger_assemble(s, V, a->H);
   for (int j = 0; j < a->shifts; j++) {
     for (int64_t e = 0; e < s->T.start[s->free]; e++) {

@@ -80,6 +80,27 @@ static dvi_status check_points(const dvi_schroedinger *s)
       "with every space");
 }
 
+/* Give each nodal function the mean of values at its points, of which ends of cells have two. */
+static void average(dvi__split *p, const double *values, double *mean)
+{
+  const dvi_schroedinger *s = p->s;
+  double *u = p->room.u;
+  const double *mass = p->at + 2 * s->free;
+  for (int64_t k = 0; k < s->points; k++) u[k] = s->weight[k] * values[k];
+  memset(mean, 0, (size_t)s->free * sizeof *mean);
+  dvi__schroedinger_add_points(s, u, mean, p->room.work);
+  for (int64_t i = 0; i < s->free; i++) mean[i] /= mass[i];
+}
+
+/* Average what does not change in time. */
+static void average_still(dvi__split *p)
+{
+  const dvi_schroedinger *s = p->s;
+  dvi__schroedinger_add_points(s, s->weight, p->at + 2 * s->free, p->room.work);
+  average(p, s->still, p->at);
+  if (s->beta != NULL) average(p, s->beta, p->at + s->free);
+}
+
 static dvi_status make_room(dvi__split *p)
 {
   const dvi_schroedinger *s = p->s;
@@ -95,7 +116,10 @@ static dvi_status make_room(dvi__split *p)
   p->change = p->rest + 2 * s->free;
   p->left = p->change + 2 * s->free;
   p->at = p->left + 4 * s->free;
-  return s->is_fourier ? DVI_OK : dvi__shifted_create(s, p->lengths, &p->cayley);
+  if (!s->depends_on_time) memcpy(p->V, s->still, (size_t)s->points * sizeof *p->V);
+  if (s->is_fourier) return DVI_OK;
+  average_still(p);
+  return dvi__shifted_create(s, p->lengths, &p->cayley);
 }
 
 dvi_status dvi__split_create(const dvi_schroedinger *s, int order, dvi__split **made)
@@ -205,24 +229,10 @@ static void turn_at_points(dvi__split *p, double time)
   add_rest(p);
 }
 
-/* Give each nodal function the mean of values at its points, of which ends of cells have two. */
-static void average(dvi__split *p, const double *values, double *mean)
-{
-  const dvi_schroedinger *s = p->s;
-  double *u = p->room.u, *mass = p->at + 2 * s->free;
-  for (int64_t k = 0; k < s->points; k++) u[k] = s->weight[k] * values[k];
-  memset(mean, 0, (size_t)s->free * sizeof *mean);
-  memset(mass, 0, (size_t)s->free * sizeof *mass);
-  dvi__schroedinger_add_points(s, u, mean, p->room.work);
-  dvi__schroedinger_add_points(s, s->weight, mass, p->room.work);
-  for (int64_t i = 0; i < s->free; i++) mean[i] /= mass[i];
-}
-
 static void turn_at_nodes(dvi__split *p, double time)
 {
   const dvi_schroedinger *s = p->s;
-  average(p, p->V, p->at);
-  if (s->beta != NULL) average(p, s->beta, p->at + s->free);
+  if (s->depends_on_time) average(p, p->V, p->at);
   turn_phases(s->free, time, p->at, s->beta != NULL ? p->at + s->free : NULL, p->next,
               p->next + s->free, p->rest, p->rest + s->free);
   add_rest(p);
@@ -230,7 +240,7 @@ static void turn_at_nodes(dvi__split *p, double time)
 
 static dvi_status turn_potential(dvi__split *p, double t, double time)
 {
-  DVI_TRY(dvi__schroedinger_potential(p->s, t, p->V));
+  if (p->s->depends_on_time) DVI_TRY(dvi__schroedinger_potential(p->s, t, p->V));
   if (p->s->is_fourier)
     turn_at_points(p, time / p->s->hbar);
   else

@@ -17,11 +17,11 @@ static void place_points(const dvi_space *space)
     double *x = space->x + d * space->points;
     after /= own;
     for (int64_t i = 0; i < before * own; i++) {
-      const int64_t cell = i % own / line->cell_points, k = i % own % line->cell_points;
-      const double start = line->node[cell], width = dvi__cell_width(line, cell);
+      double weight;
+      const double place = dvi__line_point(line, i % own, &weight);
       for (int64_t j = i * after; j < (i + 1) * after; j++) {
-        x[j] = line->place[k] == 1 ? line->node[cell + 1] : start + width * line->place[k];
-        space->weight[j] *= width * line->weight[k];
+        x[j] = place;
+        space->weight[j] *= weight;
       }
     }
     before *= own;

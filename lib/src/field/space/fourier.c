@@ -144,12 +144,13 @@ static void synthesise(const dvi__line *line, int order, const double *U, bundle
                        double *work)
 {
   const int64_t points = line->cell_points;
+  const double norm = norm_of(line, 1); /* the constant has no derivative */
   memset(values, 0, (size_t)(b.lines * points) * sizeof *values);
   for (int q = 0; q < b.lines && order == 0; q++)
     scale(line, U + q, b.stride, values + q * points, 1);
-  for (int64_t i = 0; i < line->functions && order > 0; i++) {
+  for (int64_t i = 1; i < line->functions && order > 0; i++) {
     const dvi__fourier_image image = differentiate(line, order, i);
-    const double factor = image.factor * norm_of(line, i);
+    const double factor = image.factor * norm;
     for (int q = 0; q < b.lines; q++)
       values[q * points + image.other] += factor * U[i * b.stride + q];
   }
@@ -161,14 +162,15 @@ static void add_analysis(const dvi__line *line, int order, const double *values,
                          double *copy, double *U, double *work)
 {
   const int64_t points = line->cell_points;
+  const double norm = norm_of(line, 1);
   for (int64_t j = 0; j < points; j++)
     for (int q = 0; q < b.lines; q++) copy[q * points + j] = values[j * b.stride + q];
   for (int q = 0; q < b.lines; q++) dvi__fft_analyse(line->own, copy + q * points, work);
   for (int q = 0; q < b.lines && order == 0; q++)
     scale(line, copy + q * points, 1, U + q, b.stride);
-  for (int64_t i = 0; i < line->functions && order > 0; i++) {
+  for (int64_t i = 1; i < line->functions && order > 0; i++) {
     const dvi__fourier_image image = differentiate(line, order, i);
-    const double factor = image.factor * norm_of(line, i);
+    const double factor = image.factor * norm;
     for (int q = 0; q < b.lines; q++)
       U[i * b.stride + q] += factor * copy[q * points + image.other];
   }

@@ -74,12 +74,7 @@ static dvi_status take_points(const dvi__line *line, fit *f)
   f->x = DVI_NEW(double, f->samples);
   f->weight = DVI_NEW(double, f->samples);
   if (f->x == NULL || f->weight == NULL) return dvi__fail(DVI_NO_MEMORY, "space: no memory");
-  for (int64_t i = 0; i < f->samples; i++) {
-    const int64_t cell = i / line->cell_points, k = i % line->cell_points;
-    const double start = line->node[cell], width = dvi__cell_width(line, cell);
-    f->x[i] = start + width * line->place[k];
-    f->weight[i] = width * line->weight[k];
-  }
+  for (int64_t i = 0; i < f->samples; i++) f->x[i] = dvi__line_point(line, i, f->weight + i);
   DVI_TRY(dvi__line_operator(line, 0, &f->B));
   return factor_mass(f);
 }

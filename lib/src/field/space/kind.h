@@ -110,6 +110,16 @@ static inline double dvi__cell_width(const dvi__line *line, int64_t cell)
   return line->width > 0 ? line->width : line->node[cell + 1] - line->node[cell];
 }
 
+/* Give point i of an axis and its weight. The last place of a cell may be the end of the cell
+ * itself, to the bit. */
+static inline double dvi__line_point(const dvi__line *line, int64_t i, double *weight)
+{
+  const int64_t cell = i / line->cell_points, k = i % line->cell_points;
+  const double width = dvi__cell_width(line, cell);
+  *weight = width * line->weight[k];
+  return line->place[k] == 1 ? line->node[cell + 1] : line->node[cell] + width * line->place[k];
+}
+
 /* Return the number of quadrature points. */
 static inline int64_t dvi__line_points(const dvi__line *line)
 {

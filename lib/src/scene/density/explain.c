@@ -51,18 +51,12 @@ static void add_parts(const struct dvi__scene_density *s, note *to)
   add(to, s->degree >= 0 ? "; a polynomial of degree %d in the fields\n" : "\n", s->degree);
 }
 
-/* Read an option of a Fourier axis. Returns 0 if it is left out. */
-static long option(const char *kind, const char *name)
-{
-  const char *found = strstr(kind, name);
-  return found != NULL ? strtol(found + strlen(name), NULL, 10) : 0;
-}
-
 /* Say how well the momentum along an axis can be kept. Sums of products of p functions to mode K
  * are exact with more than p K points, and the default of a space is right for p = 4. */
 static void add_momentum(const struct dvi__scene_density *s, int d, note *to)
 {
-  const long modes = option(s->axis[d].kind, "modes="), points = option(s->axis[d].kind, "points="),
+  const long modes = dvi__axis_option(s->axis[d].kind, "modes=", 0),
+             points = dvi__axis_option(s->axis[d].kind, "points=", 0),
              needed = s->degree * modes + 1;
   add(to, "momentum along %s: ", s->jets.axis[d]);
   if (s->degree < 0)

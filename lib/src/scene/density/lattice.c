@@ -13,20 +13,6 @@
 
 /* ---- the cells ---- */
 
-static long option(const char *kind, const char *name, long usual)
-{
-  const char *found = strstr(kind, name);
-  return found != NULL ? strtol(found + strlen(name), NULL, 10) : usual;
-}
-
-/* Tell if the functions of an axis are linear in each cell. */
-static bool is_linear(const char *kind)
-{
-  const size_t length = strcspn(kind, ":");
-  return length == strlen("fem") && strncmp(kind, "fem", length) == 0 &&
-         option(kind, "degree=", 1) == 1;
-}
-
 static bool is_lumped(const char *kind)
 {
   return strstr(kind, "lumped=yes") != NULL;
@@ -40,7 +26,7 @@ const char *dvi__lattice_refused(const dvi_scene *scene, const char **section)
     return "multisymplectic steps have cells in space and time, and a mesh has none: give a domain";
   }
   for (int d = 0; d < s->jets.dimension; d++)
-    if (!is_linear(s->axis[d].kind)) {
+    if (!dvi__axis_is_linear(s->axis[d].kind)) {
       *section = "space";
       return "multisymplectic steps are on the cells of linear functions: give each axis a space "
              "such as 'fem:degree=1,cells=100'";
@@ -211,7 +197,8 @@ static dvi_status make_terms(const dvi_scene *scene, const dvi_march_options *op
                                        .symmetry = s->symmetry,
                                        .symmetries = s->symmetries};
   for (int d = 0; d < s->jets.dimension; d++)
-    if (s->axis[d].node == NULL) terms->cells[d] = (int)option(s->axis[d].kind, "cells=", 0);
+    if (s->axis[d].node == NULL)
+      terms->cells[d] = (int)dvi__axis_option(s->axis[d].kind, "cells=", 0);
   return dvi_multisymplectic_parse(options->method, &terms->weights);
 }
 

@@ -64,9 +64,8 @@ static bool check_domain(dvi_scene *scene, const dvi__tree *section)
   const dvi__tree *space = dvi__tree_find(scene->tree, "space");
   if (s->mesh != NULL || s->jets.dimension != 1)
     return refuse(scene, section, "meshes move on a domain of one axis");
-  if (space == NULL || s->axis[0].kind == NULL || strstr(s->axis[0].kind, "fem") == NULL ||
-      strstr(s->axis[0].kind, "lumped=yes") != NULL ||
-      (strstr(s->axis[0].kind, "degree=") != NULL && strstr(s->axis[0].kind, "degree=1") == NULL))
+  if (space == NULL || s->axis[0].kind == NULL || !dvi__axis_is_linear(s->axis[0].kind) ||
+      strstr(s->axis[0].kind, "lumped=yes") != NULL)
     return refuse(scene, space != NULL ? space : section,
                   "cells that move are linear: 'space' is 'fem:degree=1,cells=100' there");
   return (s->jets.components <= DVI_MOVING_COMPONENTS_MAX && !s->jets.is_rotation) ||
@@ -252,13 +251,10 @@ static dvi_status create(dvi_scene *scene)
                                  .density = dvi__local_density,
                                  .user = whole,
                                  .depends_on_time = whole->has_time};
-  const char *cells = strstr(s->axis[0].kind, "cells=");
   terms->size = sizeof *terms;
   terms->axis = s->axis[0];
   terms->axis.kind = NULL;
-  terms->cells = s->axis[0].node == NULL && cells != NULL
-                     ? (int)strtol(cells + strlen("cells="), NULL, 10)
-                     : 0;
+  terms->cells = s->axis[0].node == NULL ? (int)dvi__axis_option(s->axis[0].kind, "cells=", 0) : 0;
   terms->components = s->jets.components;
   terms->part = &part;
   terms->translations = s->is_uniform;

@@ -47,10 +47,12 @@ static int evaluate(const dvi__scene_moving *m, part of, double t, const double 
   double all[MOST * POINTS], first[MOST * POINTS], second[PAIRS * POINTS];
   const dvi__local *placed = m->placed;
   take(m, of, x, z, all);
-  const int failed = dvi__local_density(of.some, t, x, all, NULL, first, second, (void *)placed);
+  const bool has_second = l_xz != NULL || l_xx != NULL;
+  const int failed = dvi__local_density(of.some, t, x, all, NULL, first, has_second ? second : NULL,
+                                        (void *)placed);
   for (int k = 0; k < placed->variables && failed == 0; k++)
     if (same_variable(m, k) < 0) put(of, first + (ptrdiff_t)k * of.some, l_x);
-  for (int e = 0; e < placed->pairs && failed == 0; e++) {
+  for (int e = 0; e < placed->pairs && has_second && failed == 0; e++) {
     const int a = same_variable(m, placed->pair[e][0]), b = same_variable(m, placed->pair[e][1]);
     const double *row = second + (ptrdiff_t)e * of.some;
     if (a < 0 && b < 0)

@@ -238,14 +238,12 @@ static bool count_cells(dvi_scene *scene, int *cells)
   if (s->mesh != NULL)
     return dvi__scene_refuse(scene, s->place->span, "a field of rotations lives on a domain");
   for (int d = 0; d < s->jets.dimension; d++) {
-    const char *kind = s->axis[d].kind, *count = kind != NULL ? strstr(kind, "cells=") : NULL;
-    const bool is_linear = count != NULL && strncmp(kind, "fem:", 4) == 0 &&
-                           (strstr(kind, "degree=") == NULL || strstr(kind, "degree=1") != NULL);
-    if (!is_linear || s->axis[d].node != NULL)
+    const char *kind = s->axis[d].kind;
+    cells[d] = kind != NULL ? (int)dvi__axis_option(kind, "cells=", 0) : 0;
+    if (cells[d] < 1 || !dvi__axis_is_linear(kind) || s->axis[d].node != NULL)
       return dvi__scene_refuse(scene, (space != NULL ? space : s->place)->span,
                                "a field of rotations has equal cells: 'space' is "
                                "'fem:degree=1,cells=100' there, and an axis has two ends");
-    cells[d] = (int)strtol(count + strlen("cells="), NULL, 10);
   }
   return true;
 }

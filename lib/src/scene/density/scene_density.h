@@ -150,6 +150,11 @@ bool dvi__schroedinger_node(dvi__context *c, const dvi__tree *section, dvi__node
 /* Sort the summands of a node into parts, and set what is known of the density. */
 bool dvi__density_sort(dvi__context *c, dvi__node root);
 
+/* Return the whole number behind a name such as "cells=" in the kind of an axis, or the usual one.
+ * Tell if the functions of the axis are elements that are linear in each cell. */
+long dvi__axis_option(const char *kind, const char *name, long usual);
+bool dvi__axis_is_linear(const char *kind);
+
 /* Make the space, for a density of the degree that is known. */
 bool dvi__density_make_space(dvi_scene *scene);
 

@@ -7,6 +7,21 @@
 #include "scene/sections/sections.h"
 #include "text/heap.h"
 
+/* ---- kinds of axes ---- */
+
+long dvi__axis_option(const char *kind, const char *name, long usual)
+{
+  const char *found = strstr(kind, name);
+  return found != NULL ? strtol(found + strlen(name), NULL, 10) : usual;
+}
+
+bool dvi__axis_is_linear(const char *kind)
+{
+  const size_t length = strcspn(kind, ":");
+  return length == strlen("fem") && strncmp(kind, "fem", length) == 0 &&
+         dvi__axis_option(kind, "degree=", 1) == 1;
+}
+
 /* ---- points of Fourier axes ---- */
 
 /* Return the smallest number of points from `least` on that has no prime factors but 2, 3, 5. */
