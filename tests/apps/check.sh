@@ -36,6 +36,23 @@ says() {
   grep -q -e "$2" "$1" || { fail "$3: no line with '$2' in $1:"; sed 's/^/    /' "$1" | head -n 5; }
 }
 
+# about FILE COLUMN VALUE TOLERANCE: require the number in the last row of a CSV file.
+about() {
+  awk -F, -v name="$2" -v value="$3" -v tolerance="$4" '
+    NR == 1 { for (i = 1; i <= NF; i++) if ($i == name) column = i }
+    { last = $column }
+    END { d = last - value; exit !(column && d <= tolerance && d >= -tolerance) }' "$1" ||
+    { fail "$2 is $3"; tail -n 1 "$1"; }
+}
+
+# refused SCENE NAME EDIT WORDS PLACE: require that an edited scene is refused at a place.
+refused() {
+  sed "$3" "$1" >"$2.yaml"
+  expect 2 "$2" run "$2.yaml"
+  says err "^dvi: $2.yaml:$5: " "the place of $2"
+  says err "$4" "the reason of $2"
+}
+
 # same FILE FILE NAME: require two files with the same bytes.
 same() { cmp -s "$1" "$2" || fail "$3: $1 and $2 differ"; }
 

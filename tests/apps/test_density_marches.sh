@@ -3,15 +3,6 @@
 # Usage: test_density_marches.sh DVI
 . "$(dirname "$0")/check.sh"
 
-# about FILE COLUMN VALUE TOLERANCE: require the number in the last row of a CSV file.
-about() {
-  awk -F, -v name="$2" -v value="$3" -v tolerance="$4" '
-    NR == 1 { for (i = 1; i <= NF; i++) if ($i == name) column = i }
-    { last = $column }
-    END { d = last - value; exit !(column && d <= tolerance && d >= -tolerance) }' "$1" ||
-    { fail "$2 is $3"; tail -n 1 "$1"; }
-}
-
 cat >sine.yaml <<END
 domain: {x: [0, 2*pi]}
 space: fem:degree=1,cells=21
@@ -42,21 +33,14 @@ says out 'with steps of 0.1' 'the steps'
 expect 1 'a long step' run sine.yaml --method multisymplectic --h 5
 says err 'beyond the bound 0.299' 'the bound'
 
-# refused NAME EDIT WORDS PLACE: require that an edited scene is refused at a place.
-refused() {
-  sed "$2" sine.yaml >"$1.yaml"
-  expect 2 "$1" run "$1.yaml"
-  says err "^dvi: $1.yaml:$4: " "the place of $1"
-  says err "$3" "the reason of $1"
-}
-refused cfl 's/^step.*/step: 5/;s/:space=exact.*//' 'beyond the bound' 9:7
-refused even 's/cells=21/cells=20/;s/exact/midpoint/' 'take an odd number of cells' 2:8
-refused quadratic 's/degree=1/degree=2/' 'on the cells of linear functions' 2:8
-refused bent "s/fem:degree=1/spline:degree=3/;s/d(u,x)^2/d(u,x,x)^2/" 'linear functions' 2:8
-refused first "s/scalar/complex/;s/u'^2.*/u[1]'*u[2] - dot(d(u,x),d(u,x))\/2/;/^initial/d
+refused sine.yaml cfl 's/^step.*/step: 5/;s/:space=exact.*//' 'beyond the bound' 9:7
+refused sine.yaml even 's/cells=21/cells=20/;s/exact/midpoint/' 'take an odd number of cells' 2:8
+refused sine.yaml quadratic 's/degree=1/degree=2/' 'on the cells of linear functions' 2:8
+refused sine.yaml bent "s/fem:degree=1/spline:degree=3/;s/d(u,x)^2/d(u,x,x)^2/" 'linear functions' 2:8
+refused sine.yaml first "s/scalar/complex/;s/u'^2.*/u[1]'*u[2] - dot(d(u,x),d(u,x))\/2/;/^initial/d
   /^probes/d" 'one-form' 4:10
-refused word 's/exact/half/' '"space=half" is no option' 8:9
-refused mesh 's/^domain.*/mesh: {generator: disk, cells: 4}/;s/,cells=21//;/boundary/d;/probes/d' \
+refused sine.yaml word 's/exact/half/' '"space=half" is no option' 8:9
+refused sine.yaml mesh 's/^domain.*/mesh: {generator: disk, cells: 4}/;s/,cells=21//;/boundary/d;/probes/d' \
   'a mesh has none' 1:7
 
 cat >lattice.yaml <<END

@@ -3,15 +3,6 @@
 # Usage: test_moving.sh DVI
 . "$(dirname "$0")/check.sh"
 
-# about FILE COLUMN VALUE TOLERANCE: require the number in the last row of a CSV file.
-about() {
-  awk -F, -v name="$2" -v value="$3" -v tolerance="$4" '
-    NR == 1 { for (i = 1; i <= NF; i++) if ($i == name) column = i }
-    { last = $column }
-    END { d = last - value; exit !(column && d <= tolerance && d >= -tolerance) }' "$1" ||
-    { fail "$2 is $3"; tail -n 1 "$1"; }
-}
-
 # steady FILE COLUMN TOLERANCE: require that a column changes by no more.
 steady() {
   awk -F, -v name="$2" -v tolerance="$3" '
@@ -127,24 +118,17 @@ expect 0 'derivatives by the position' check placed.yaml
 says out 'derivatives: within\|derivatives: as right' 'the derivatives are right'
 says out 'a mesh of 64 cells whose nodes are unknowns: mu = 0.01, kappa = 0.05' 'the mesh'
 
-# refused NAME EDIT WORDS PLACE: require that an edited scene is refused at a place.
-refused() {
-  sed "$2" ring.yaml >"$1.yaml"
-  expect 2 "$1" run "$1.yaml"
-  says err "^dvi: $1.yaml:$4: " "the place of $1"
-  says err "$3" "the reason of $1"
-}
-refused curved 's/degree=1/degree=2/' 'cells that move are linear' 4:8
-refused curved 's/degree=1/degree=12/' 'cells that move are linear' 4:8
-refused rapid 's/fem:degree=1/msfem:fine=4/' 'cells that move are linear' 4:8
-refused plane 's/^domain.*/domain: {x: [0, 1], y: [0, 1]}/' 'on a domain of one axis' 9:9
-refused word 's/^moving.*/moving: slowly/' "is yes, no, or tells how" 9:9
-refused key 's/kappa/kapa/' "kappa" 9:20
-refused negative 's/mu: 0.01/mu: -1/' 'mu is 0 or more' 9:14
-refused massless 's/mu: 0.01, /mu: 0, /;s/4.atan.*}/0}/' 'give mu > 0' 9:9
-refused leap "s/periodic/{left: {fixed: 0}}/" 'a jump is what a field on a periodic axis' 9:92
-refused rate "s/d(u,x)\", at/u'\", at/" "'slope' has others" 10:45
-refused flux 's/^boundary.*/boundary: {left: {free: 1}}/;s/, jump.*}/}/' 'no flux and no robin' 7:11
+refused ring.yaml curved 's/degree=1/degree=2/' 'cells that move are linear' 4:8
+refused ring.yaml curved 's/degree=1/degree=12/' 'cells that move are linear' 4:8
+refused ring.yaml rapid 's/fem:degree=1/msfem:fine=4/' 'cells that move are linear' 4:8
+refused ring.yaml plane 's/^domain.*/domain: {x: [0, 1], y: [0, 1]}/' 'on a domain of one axis' 9:9
+refused ring.yaml word 's/^moving.*/moving: slowly/' "is yes, no, or tells how" 9:9
+refused ring.yaml key 's/kappa/kapa/' "kappa" 9:20
+refused ring.yaml negative 's/mu: 0.01/mu: -1/' 'mu is 0 or more' 9:14
+refused ring.yaml massless 's/mu: 0.01, /mu: 0, /;s/4.atan.*}/0}/' 'give mu > 0' 9:9
+refused ring.yaml leap "s/periodic/{left: {fixed: 0}}/" 'a jump is what a field on a periodic axis' 9:92
+refused ring.yaml rate "s/d(u,x)\", at/u'\", at/" "'slope' has others" 10:45
+refused ring.yaml flux 's/^boundary.*/boundary: {left: {free: 1}}/;s/, jump.*}/}/' 'no flux and no robin' 7:11
 expect 2 'frames' run ring.yaml --pvd ring.pvd
 
 finish

@@ -3,15 +3,6 @@
 # Usage: test_rotation_fields.sh DVI
 . "$(dirname "$0")/check.sh"
 
-# about FILE COLUMN VALUE TOLERANCE: require the number in the last row of a CSV file.
-about() {
-  awk -F, -v name="$2" -v value="$3" -v tolerance="$4" '
-    NR == 1 { for (i = 1; i <= NF; i++) if ($i == name) column = i }
-    { last = $column }
-    END { d = last - value; exit !(column && d <= tolerance && d >= -tolerance) }' "$1" ||
-    { fail "$2 is $3"; tail -n 1 "$1"; }
-}
-
 cat >ring.yaml <<END
 parameters:
   J: [[1.6, 0, 0], [0, 1.4, 0], [0, 0, 1.2]]
@@ -84,31 +75,24 @@ until: 1
 END
 expect 0 'a sheet' run sheet.yaml --final
 
-# refused NAME EDIT WORDS PLACE: require that an edited scene is refused at a place.
-refused() {
-  sed "$2" rod.yaml >"$1.yaml"
-  expect 2 "$1" run "$1.yaml"
-  says err "^dvi: $1.yaml:$4: " "the place of $1"
-  says err "$3" "the reason of $1"
-}
-refused two 's/R: rotation/R: rotation, u: scalar/' 'is the only one of its scene' 4:9
-refused rate \
+refused rod.yaml two 's/R: rotation/R: rotation, u: scalar/' 'is the only one of its scene' 4:9
+refused rod.yaml rate \
   "s/kappa(R,x), kappa(R,x)/omega(R), d(R[1,1]', x)*kappa(R,x)/" 'no other derivatives' 5:54
-refused slope 's/kappa(R,x), kappa(R,x)/d(R[1], x), d(R[1], x)/' 'no other derivatives' 5:44
-refused curved 's/kappa(R,x))\/2/kappa(R,x))^2/' 'with constant J and K' 5:10
-refused mixed 's/J\*omega(R))\/2/R*omega(R))/' 'with constant J and K' 5:10
-refused driven 's/(1 + x)/sin(t)/' 'does not depend on time' 5:10
-refused start 's/^initial.*/initial: {R: "[[2,0,0],[0,1,0],[0,0,1]]"}/' 'no rotation' 7:10
+refused rod.yaml slope 's/kappa(R,x), kappa(R,x)/d(R[1], x), d(R[1], x)/' 'no other derivatives' 5:44
+refused rod.yaml curved 's/kappa(R,x))\/2/kappa(R,x))^2/' 'with constant J and K' 5:10
+refused rod.yaml mixed 's/J\*omega(R))\/2/R*omega(R))/' 'with constant J and K' 5:10
+refused rod.yaml driven 's/(1 + x)/sin(t)/' 'does not depend on time' 5:10
+refused rod.yaml start 's/^initial.*/initial: {R: "[[2,0,0],[0,1,0],[0,0,1]]"}/' 'no rotation' 7:10
 sed '/^boundary/d' rod.yaml >free.yaml
 sed 's/^initial.*/initial: {R: "[[2,0,0],[0,1,0],[0,0,1]]"}/' free.yaml >off.yaml
 expect 2 'a start that is off' run off.yaml
 says err '^dvi: off.yaml:6:10: the start is no rotation at x = 0: off by 1' 'the reason'
-refused key "s/^initial.*/initial: {R': 0}/" "is 'R' and 'omega(R)'" 7:11
-refused fine 's/degree=1/degree=2/' 'has equal cells' 3:8
-refused turned 's/^boundary.*/boundary: {left: {robin: 1}}/' \
+refused rod.yaml key "s/^initial.*/initial: {R': 0}/" "is 'R' and 'omega(R)'" 7:11
+refused rod.yaml fine 's/degree=1/degree=2/' 'has equal cells' 3:8
+refused rod.yaml turned 's/^boundary.*/boundary: {left: {robin: 1}}/' \
   'are free, or fixed where the start' 6:11
-refused seen 's/^step/probes: {a: R}\n&/' 'have no probes' 9:9
-refused word 's/rotation/spinor/' 'scalar, complex, vector(d) or rotation' 4:13
-refused bent 's/kappa(R,x), kappa(R,x)/kappa(R), kappa(R)/' 'as in kappa(R,x)' 5:44
+refused rod.yaml seen 's/^step/probes: {a: R}\n&/' 'have no probes' 9:9
+refused rod.yaml word 's/rotation/spinor/' 'scalar, complex, vector(d) or rotation' 4:13
+refused rod.yaml bent 's/kappa(R,x), kappa(R,x)/kappa(R), kappa(R)/' 'as in kappa(R,x)' 5:44
 
 finish

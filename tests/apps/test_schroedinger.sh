@@ -3,15 +3,6 @@
 # Usage: test_schroedinger.sh DVI
 . "$(dirname "$0")/check.sh"
 
-# about FILE COLUMN VALUE TOLERANCE: require the number in the last row of a CSV file.
-about() {
-  awk -F, -v name="$2" -v value="$3" -v tolerance="$4" '
-    NR == 1 { for (i = 1; i <= NF; i++) if ($i == name) column = i }
-    { last = $column }
-    END { d = last - value; exit !(column && d <= tolerance && d >= -tolerance) }' "$1" ||
-    { fail "$2 is $3"; tail -n 1 "$1"; }
-}
-
 cat >plane.yaml <<END
 domain: {x: [0, 2*pi]}
 space: fourier:modes=4

@@ -26,25 +26,11 @@ static const char *const methods[] = {"verlet",
                                       "hp:degree=2"};
 enum { KINDS = 4, METHODS = sizeof methods / sizeof *methods, MEMBERS = 4 };
 
-static int bump(int64_t count, const double *x, double *f, void *user)
-{
-  (void)user;
-  for (int64_t k = 0; k < count; k++) f[k] = 1.5 + 0.5 * cos(x[k]);
-  return 0;
-}
-
-static int push(int64_t count, const double *x, double *f, void *user)
-{
-  (void)user;
-  for (int64_t k = 0; k < count; k++) f[k] = 0.3 * sin(x[k]);
-  return 0;
-}
-
 static density_field pendula(const char *kind)
 {
   const dvi_density_part parts[] = {kinetic_part, elastic_part, sine_gordon_part};
   density_field field = make_density(make_density_space(kind, 1, 0, 2 * pi, 1), parts, 3, NULL, 0);
-  set_density(&field, bump, push, NULL);
+  set_density(&field, pendula_start, pendula_rate, NULL);
   return field;
 }
 
@@ -58,7 +44,7 @@ START_TEST(methods_agree)
     memcpy(judged, field.q, (size_t)field.n * sizeof *judged);
     for (int m = 0; m < METHODS; m++) {
       memset(field.U, 0, (size_t)field.places * sizeof *field.U);
-      set_density(&field, bump, push, NULL);
+      set_density(&field, pendula_start, pendula_rate, NULL);
       run_density(&field, methods[m], 0, 0.005, 100);
       const double error = distance((int)field.n, field.q, judged);
       ck_assert_msg(error < 2e-5, "%s on %s: %g", methods[m], kinds[i], error);
@@ -110,11 +96,11 @@ START_TEST(ranges_and_threads_have_the_same_bits)
     density_field field = make_density(make_density_space(chains[i], 1, 0, 200, 0), parts, 3, NULL,
                                        0);
     double *q = calloc((size_t)field.n, sizeof *q);
-    set_density(&field, bump, push, NULL);
+    set_density(&field, pendula_start, pendula_rate, NULL);
     run_density(&field, "verlet", 0, 0.005, 60);
     memcpy(q, field.q, (size_t)field.n * sizeof *q);
     memset(field.U, 0, (size_t)field.places * sizeof *field.U);
-    set_density(&field, bump, push, NULL);
+    set_density(&field, pendula_start, pendula_rate, NULL);
     run_density(&field, "verlet:threads=2", 0, 0.005, 60);
     ck_assert(memcmp(q, field.q, (size_t)field.n * sizeof *q) == 0);
     free(q);

@@ -238,24 +238,8 @@ START_TEST(fluxes_and_robin_terms_pull_at_sides)
 END_TEST
 
 /* Values that move: u = sin(t - x) on [0,1]. */
-static int moving(int64_t count, double t, const double *x, double *datum, void *user)
-{
-  (void)user;
-  for (int64_t k = 0; k < count; k++) datum[k] = sin(t - x[k]);
-  return 0;
-}
-
-static int moving_rates(int64_t count, double t, const double *x, double *rate, double *second,
-                        void *user)
-{
-  (void)user;
-  for (int64_t k = 0; k < count; k++) rate[k] = cos(t - x[k]);
-  for (int64_t k = 0; k < count && second != NULL; k++) second[k] = -sin(t - x[k]);
-  return 0;
-}
-
 static const dvi_density_condition moving_ends = {
-    .part = "boundary", .kind = DVI_FIXED, .datum = moving, .rate = moving_rates};
+    .part = "boundary", .kind = DVI_FIXED, .datum = sine_datum, .rate = sine_datum_rates};
 
 static int wave(int64_t count, const double *x, double *f, void *user)
 {
@@ -340,7 +324,7 @@ START_TEST(fields_explain_themselves)
 {
   const dvi_density_part parts[] = {kinetic_part, elastic_part, sine_gordon_part};
   const dvi_density_condition ends[] = {
-      {.part = "left", .kind = DVI_FIXED, .datum = moving, .rate = moving_rates},
+      {.part = "left", .kind = DVI_FIXED, .datum = sine_datum, .rate = sine_datum_rates},
       {.part = "right", .kind = DVI_FIXED, .datum = line}};
   density_field field = make_density(make_density_space("fem:degree=1,cells=8", 1, 0, 1, 0), parts,
                                      3, ends, 2);
@@ -363,7 +347,7 @@ START_TEST(rates_are_lifted_with_those_that_move)
 {
   const dvi_density_part parts[] = {kinetic_part, elastic_part};
   const dvi_density_condition ends[] = {
-      {.part = "left", .kind = DVI_FIXED, .datum = moving, .rate = moving_rates},
+      {.part = "left", .kind = DVI_FIXED, .datum = sine_datum, .rate = sine_datum_rates},
       {.part = "right", .kind = DVI_FIXED, .datum = line}};
   density_field field = make_density(make_density_space("fem:degree=1,cells=3", 1, 0, 1, 0), parts,
                                      2, ends, 2);

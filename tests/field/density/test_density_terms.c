@@ -272,28 +272,12 @@ END_TEST
 
 /* ---- memory ---- */
 
-static int moving(int64_t count, double t, const double *x, double *datum, void *user)
-{
-  (void)user;
-  for (int64_t k = 0; k < count; k++) datum[k] = sin(t - x[k]);
-  return 0;
-}
-
-static int moving_rates(int64_t count, double t, const double *x, double *first, double *second,
-                        void *user)
-{
-  (void)user;
-  for (int64_t k = 0; k < count; k++) first[k] = cos(t - x[k]);
-  for (int64_t k = 0; k < count && second != NULL; k++) second[k] = -sin(t - x[k]);
-  return 0;
-}
-
 START_TEST(steps_take_no_memory)
 {
   static const char *const methods[] = {"verlet", "midpoint", "galerkin:degree=2"};
   const dvi_density_part parts[] = {kinetic_part, elastic_part, push_part, sine_gordon_part};
   const dvi_density_condition ends = {
-      .part = "boundary", .kind = DVI_FIXED, .datum = moving, .rate = moving_rates};
+      .part = "boundary", .kind = DVI_FIXED, .datum = sine_datum, .rate = sine_datum_rates};
   for (int i = 0; i < 3; i++)
     for (int m = i < 2; m < 3;
          m++) { /* a vector potential, and a consistent mass, are not for all */

@@ -13,26 +13,12 @@ static const double pi = 3.14159265358979323846;
 
 /* ---- orders in time ---- */
 
-static int bump(int64_t count, const double *x, double *f, void *user)
-{
-  (void)user;
-  for (int64_t k = 0; k < count; k++) f[k] = 1.5 + 0.5 * cos(x[k]);
-  return 0;
-}
-
-static int push(int64_t count, const double *x, double *f, void *user)
-{
-  (void)user;
-  for (int64_t k = 0; k < count; k++) f[k] = 0.3 * sin(x[k]);
-  return 0;
-}
-
 /* The largest error of q at t = 1 beside CVODE, for steps of 1/steps. */
 static double error_in_time(density_field *field, const double *judged, const char *method,
                             int steps)
 {
   memset(field->U, 0, (size_t)field->places * sizeof(double));
-  set_density(field, bump, push, NULL);
+  set_density(field, pendula_start, pendula_rate, NULL);
   run_density(field, method, 0, 1.0 / steps, steps);
   return distance((int)field->n, field->q, judged);
 }
@@ -52,7 +38,7 @@ START_TEST(methods_have_their_orders_in_time)
     density_field field = make_density(make_density_space(kinds[i], 1, 0, 2 * pi, 1), parts, 3,
                                        NULL, 0);
     double *judged = calloc((size_t)field.n, sizeof *judged);
-    set_density(&field, bump, push, NULL);
+    set_density(&field, pendula_start, pendula_rate, NULL);
     ck_assert_msg(dvi_reference_solve(field.system, 0, 1, field.q, field.p, &adams, NULL) == DVI_OK,
                   "%s", dvi_last_error());
     memcpy(judged, field.q, (size_t)field.n * sizeof *judged);
@@ -321,27 +307,11 @@ START_TEST(general_parts_agree_with_differences)
 }
 END_TEST
 
-static int moving(int64_t count, double t, const double *x, double *datum, void *user)
-{
-  (void)user;
-  for (int64_t k = 0; k < count; k++) datum[k] = sin(t - x[k]);
-  return 0;
-}
-
-static int moving_rates(int64_t count, double t, const double *x, double *first, double *second,
-                        void *user)
-{
-  (void)user;
-  for (int64_t k = 0; k < count; k++) first[k] = cos(t - x[k]);
-  for (int64_t k = 0; k < count && second != NULL; k++) second[k] = -sin(t - x[k]);
-  return 0;
-}
-
 START_TEST(general_parts_go_with_values_that_move)
 {
   static const char *const kinds[] = {"fem:degree=2,cells=5", "spline:degree=2,cells=7"};
   const dvi_density_condition ends = {
-      .part = "boundary", .kind = DVI_FIXED, .datum = moving, .rate = moving_rates};
+      .part = "boundary", .kind = DVI_FIXED, .datum = sine_datum, .rate = sine_datum_rates};
   for (int i = 0; i < 2; i++) {
     density_field field = make_density(make_density_space(kinds[i], 1, 0, 1, 0), &heavy_part, 1,
                                        &ends, 1);
@@ -376,7 +346,7 @@ START_TEST(general_parts_move_as_ida_says)
                                      &heavy_part, 1, NULL, 0);
   double errors[3], *judged = calloc((size_t)(2 * field.n), sizeof *judged);
   for (int i = 0; i < 3; i++) {
-    set_density(&field, bump, push, NULL);
+    set_density(&field, pendula_start, pendula_rate, NULL);
     if (i == 0) {
       double *p = judged + field.n;
       memcpy(judged, field.q, (size_t)field.n * sizeof *judged);

@@ -3,16 +3,11 @@
 #include <dvi/dvi.h>
 #include <math.h>
 
+#include "support/field/marches.h"
 #include "support/suite.h"
 #include "support/waves/lattices.h"
 
 static const double pi = 3.14159265358979323846;
-
-static void advance(dvi_march *march, double t)
-{
-  const dvi_status status = dvi_march_advance(march, t);
-  ck_assert_msg(status == DVI_OK, "%s", dvi_last_error());
-}
 
 /* ---- conditions ---- */
 
@@ -55,7 +50,7 @@ START_TEST(walls_may_move)
     dvi_march *march = NULL;
     ck_assert_int_eq(dvi_multisymplectic_create(&w.terms, &march), DVI_OK);
     lattice_start(march, &w, sine_wave, NULL);
-    advance(march, 2);
+    advance_march(march, 2);
     const double error = lattice_distance(march, &w, sine_wave, NULL);
     if (cells > 40) ck_assert_double_eq_tol(log2(before / error), 2, 0.2);
     before = error;
@@ -90,7 +85,7 @@ START_TEST(fluxes_may_move)
     dvi_march *march = NULL;
     ck_assert_int_eq(dvi_multisymplectic_create(&w.terms, &march), DVI_OK);
     lattice_start(march, &w, sine_wave, NULL);
-    advance(march, 2);
+    advance_march(march, 2);
     const double error = lattice_distance(march, &w, sine_wave, NULL);
     if (cells > 40) ck_assert_double_eq_tol(log2(before / error), 2, 0.2);
     before = error;
@@ -130,7 +125,7 @@ START_TEST(springs_hold_the_boundary)
     ck_assert_int_eq(dvi_multisymplectic_create(&w.terms, &march), DVI_OK);
     lattice_start(march, &w, sprung, NULL);
     ck_assert_int_eq(dvi_march_observe(march, 0, &energy), DVI_OK);
-    advance(march, 2);
+    advance_march(march, 2);
     ck_assert_int_eq(dvi_march_observe(march, 0, &later), DVI_OK);
     ck_assert_double_eq_tol(energy, later, 1e-13); /* roundings */
     const double error = lattice_distance(march, &w, sprung, NULL);
@@ -171,7 +166,7 @@ START_TEST(cells_may_be_unequal)
     double energy, later;
     lattice_start(march, &w, quarter_wave, NULL);
     ck_assert_int_eq(dvi_march_observe(march, 0, &energy), DVI_OK);
-    advance(march, 10);
+    advance_march(march, 10);
     ck_assert_int_eq(dvi_march_observe(march, 0, &later), DVI_OK);
     ck_assert_double_eq_tol(energy, later, 1e-13); /* roundings */
     const double error = lattice_distance(march, &w, quarter_wave, NULL);
@@ -205,7 +200,7 @@ START_TEST(densities_may_be_nonlinear_in_the_rates)
     int count;
     ck_assert_int_eq(dvi_multisymplectic_create(&w.terms, &march), DVI_OK);
     lattice_start(march, &w, right_going, NULL);
-    advance(march, 2);
+    advance_march(march, 2);
     const double error = lattice_distance(march, &w, right_going, NULL);
     if (cells > 100) ck_assert_double_eq_tol(log2(before / error), 2, 0.2);
     before = error;
@@ -259,7 +254,7 @@ START_TEST(densities_may_depend_on_time_and_place)
     dvi_march *march = NULL;
     ck_assert_int_eq(dvi_multisymplectic_create(&w.terms, &march), DVI_OK);
     lattice_start(march, &w, driven, NULL);
-    advance(march, cells * w.step); /* at a level */
+    advance_march(march, cells * w.step); /* at a level */
     const double error = lattice_distance(march, &w, driven, NULL);
     if (cells > 100) ck_assert_double_eq_tol(log2(before / error), 2, 0.2);
     before = error;
@@ -311,7 +306,7 @@ START_TEST(densities_may_mix_rates_and_derivatives)
     ck_assert_int_eq(dvi_multisymplectic_create(&w.terms, &march), DVI_OK);
     lattice_start(march, &w, slow_wave, NULL);
     ck_assert_int_eq(dvi_march_observe(march, 0, &energy), DVI_OK);
-    advance(march, 2);
+    advance_march(march, 2);
     ck_assert_int_eq(dvi_march_observe(march, 0, &later), DVI_OK);
     ck_assert_double_eq_tol(energy, later, 1e-12); /* roundings */
     const double error = lattice_distance(march, &w, slow_wave, NULL);
@@ -343,7 +338,7 @@ START_TEST(springs_bound_the_steps)
   if (_i == 0) ck_assert_double_eq_tol(facts.bound, 2 * h / sqrt(2 * (2 + sqrt(2))), 1e-14);
   lattice_start(march, &w, sine_wave, NULL);
   ck_assert_int_eq(dvi_march_observe(march, 0, &energy), DVI_OK);
-  advance(march, 1000 * facts.step);
+  advance_march(march, 1000 * facts.step);
   ck_assert_int_eq(dvi_march_observe(march, 0, &later), DVI_OK);
   ck_assert_double_eq_tol(later, energy, 1e-11 * energy); /* roundings of a thousand steps */
   dvi_march_destroy(&march);

@@ -6,16 +6,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "support/field/marches.h"
 #include "support/suite.h"
 #include "support/waves/lattices.h"
 
 static const double pi = 3.14159265358979323846;
-
-static void advance(dvi_march *march, double t)
-{
-  const dvi_status status = dvi_march_advance(march, t);
-  ck_assert_msg(status == DVI_OK, "%s", dvi_last_error());
-}
 
 static double observe(const dvi_march *march, const char *name)
 {
@@ -161,7 +156,7 @@ START_TEST(symmetries_conserve_what_belongs_to_them)
   const dvi_march_state start = {.size = sizeof start, .A = A, .E = E};
   ck_assert_int_eq(dvi_march_start(march, &start), DVI_OK);
   const double charge = observe(march, "charge"), energy = observe(march, "energy");
-  advance(march, 100);
+  advance_march(march, 100);
   ck_assert_double_gt(charge, 1);
   ck_assert_double_eq_tol(observe(march, "charge"), charge, 1e-12 * charge);
   ck_assert_double_eq_tol(observe(march, "energy"), energy, 1e-2 * energy);
@@ -221,7 +216,7 @@ START_TEST(quadratic_densities_conserve_energy_and_momentum)
   dvi_march *march = lattice_march(&w);
   lattice_start(march, &w, lump, NULL);
   const double energy = observe(march, "energy"), momentum = observe(march, "momentum_x");
-  advance(march, 1000 * w.step);
+  advance_march(march, 1000 * w.step);
   /* roundings of a thousand steps */
   ck_assert_double_eq_tol(observe(march, "energy"), energy, 1e-12 * energy);
   ck_assert_double_eq_tol(observe(march, "momentum_x"), momentum, 1e-12 * energy);
@@ -314,7 +309,7 @@ START_TEST(waves_stay_bounded_up_to_the_bound)
   lattice_start(march, &w, alternating, &k);
   dvi_march_facts facts;
   dvi_march_facts_of(march, &facts);
-  advance(march, 10000 * facts.step);
+  advance_march(march, 10000 * facts.step);
   double u[20];
   ck_assert_int_eq(dvi_march_sample(march, DVI_FORM_A, 0, NULL, u), DVI_OK);
   /* close to the bound modes grow at first to 1/sqrt(1 - .999) of their start */

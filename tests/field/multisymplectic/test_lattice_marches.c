@@ -7,15 +7,10 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "support/field/marches.h"
 #include "support/files.h"
 #include "support/suite.h"
 #include "support/waves/lattices.h"
-
-static void advance(dvi_march *march, double t)
-{
-  const dvi_status status = dvi_march_advance(march, t);
-  ck_assert_msg(status == DVI_OK, "%s", dvi_last_error());
-}
 
 static double hump(double t, const double *x, const void *of)
 {
@@ -73,13 +68,13 @@ START_TEST(cuts_of_the_way_and_observations_change_no_bit)
 {
   lattice w = kind(_i);
   dvi_march *a = begun(&w), *b = begun(&w);
-  advance(a, 4.4);
+  advance_march(a, 4.4);
   for (int i = 1; i < 60; i++) {
     double energy;
-    advance(b, .07 * i);
+    advance_march(b, .07 * i);
     ck_assert_int_eq(dvi_march_observe(b, 0, &energy), DVI_OK);
   }
-  advance(b, 4.4);
+  advance_march(b, 4.4);
   check_same(a, b);
   dvi_march_destroy(&a);
   dvi_march_destroy(&b);
@@ -91,12 +86,12 @@ START_TEST(restarts_change_no_bit)
   lattice w = kind(_i), other = kind(_i);
   dvi_march *a = begun(&w), *b = lattice_march(&other);
   const char *path = path_in_folder("lattice.state");
-  advance(a, 2.1);
+  advance_march(a, 2.1);
   ck_assert_int_eq(dvi_march_save(a, path), DVI_OK);
   ck_assert_int_eq(dvi_march_load(b, path), DVI_OK);
   check_same(a, b);
-  advance(a, 5);
-  advance(b, 5);
+  advance_march(a, 5);
+  advance_march(b, 5);
   check_same(a, b);
   dvi_march_destroy(&a);
   dvi_march_destroy(&b);
@@ -107,10 +102,10 @@ START_TEST(a_start_forgets_what_was_before)
 {
   lattice w = kind(_i);
   dvi_march *a = begun(&w), *b = begun(&w);
-  advance(b, 3);
+  advance_march(b, 3);
   lattice_start(b, &w, hump, NULL);
-  advance(a, 3);
-  advance(b, 3);
+  advance_march(a, 3);
+  advance_march(b, 3);
   check_same(a, b);
   dvi_march_destroy(&a);
   dvi_march_destroy(&b);
@@ -123,8 +118,8 @@ START_TEST(samples_are_continuous_at_levels)
   lattice w = kind(_i);
   dvi_march *a = begun(&w), *b = begun(&w);
   double below, at;
-  advance(a, 8 * w.step * (1 - 1e-12));
-  advance(b, 8 * w.step);
+  advance_march(a, 8 * w.step * (1 - 1e-12));
+  advance_march(b, 8 * w.step);
   const int cell = 4;
   ck_assert_int_eq(dvi_march_sample(a, DVI_FORM_A, 1, &cell, &below), DVI_OK);
   ck_assert_int_eq(dvi_march_sample(b, DVI_FORM_A, 1, &cell, &at), DVI_OK);
@@ -139,7 +134,7 @@ START_TEST(damaged_files_and_those_of_others_are_refused)
   lattice w = kind(1), other = kind(1);
   dvi_march *a = begun(&w), *b = begun(&other);
   const char *path = path_in_folder("lattice.state");
-  advance(a, 1);
+  advance_march(a, 1);
   ck_assert_int_eq(dvi_march_save(a, path), DVI_OK);
   const bytes whole = read_bytes(path);
   for (size_t count = 0; count < whole.count; count += 97) {
@@ -370,8 +365,8 @@ START_TEST(failed_steps_change_no_bit_of_later_ones)
     of.fails = i;
     if (dvi_march_advance(march, i * a.step) != DVI_OK) failures++;
     of.fails = 0;
-    advance(march, i * a.step);
-    advance(clean, i * a.step);
+    advance_march(march, i * a.step);
+    advance_march(clean, i * a.step);
     check_same(clean, march);
     ck_assert(i < 60 || failures > 5);
   }
@@ -400,8 +395,8 @@ START_TEST(starts_beyond_the_density_leave_the_state)
   for (int i = 0; i < 21; i++) fast[i] = 2;
   const dvi_march_state start = {.size = sizeof start, .E = fast};
   ck_assert_int_eq(dvi_march_start(march, &start), DVI_CALLBACK_RETRY);
-  advance(march, 1);
-  advance(same, 1);
+  advance_march(march, 1);
+  advance_march(same, 1);
   check_same(march, same);
   const dvi_march_state with_B = {.size = sizeof start, .B = fast};
   ck_assert_int_eq(dvi_march_start(march, &with_B), DVI_BAD_ARGUMENT);
@@ -424,9 +419,9 @@ START_TEST(failed_allocations_are_reported)
     if (status != DVI_OK) check_words("no memory");
   }
   lattice_start(march, &w, hump, NULL);
-  advance(march, 1);
+  advance_march(march, 1);
   const long before = dvi__allocation_count();
-  advance(march, 5);
+  advance_march(march, 5);
   ck_assert_int_eq(dvi__allocation_count(), before);
   dvi_march_destroy(&march);
   dvi_law law[DVI_LAWS_MAX];

@@ -5,16 +5,11 @@
 #include <stdlib.h>
 
 #include "field/multisymplectic/march.h"
+#include "support/field/marches.h"
 #include "support/suite.h"
 #include "support/waves/lattices.h"
 
 static const double pi = 3.14159265358979323846;
-
-static void advance(dvi_march *march, double t)
-{
-  const dvi_status status = dvi_march_advance(march, t);
-  ck_assert_msg(status == DVI_OK, "%s", dvi_last_error());
-}
 
 static double observe(const dvi_march *march, int i)
 {
@@ -105,7 +100,7 @@ START_TEST(plane_waves_go_on_with_their_frequency)
   const wave of = {1, waves[_i].stands, {3}, waves[_i].omega};
   dvi_march *march = lattice_march(&w);
   lattice_start(march, &w, wave_at, &of);
-  advance(march, 100 * w.step);
+  advance_march(march, 100 * w.step);
   ck_assert_double_lt(lattice_distance(march, &w, wave_at, &of), 1e-12);
   dvi_march_destroy(&march);
 }
@@ -137,7 +132,7 @@ START_TEST(waves_on_more_axes_have_the_sum_of_symbols)
   of.omega = angle(time, s * dt * dt) / dt;
   dvi_march *march = lattice_march(&w);
   lattice_start(march, &w, wave_at, &of);
-  advance(march, 20 * dt);
+  advance_march(march, 20 * dt);
   ck_assert_double_lt(lattice_distance(march, &w, wave_at, &of), 1e-13);
   dvi_march_destroy(&march);
 }
@@ -155,7 +150,7 @@ START_TEST(large_matrices_in_space_are_solved_with_by_iteration)
   of.omega = angle(w.time, s * dt * dt) / dt;
   dvi_march *march = lattice_march(&w);
   lattice_start(march, &w, wave_at, &of);
-  advance(march, 3 * dt);
+  advance_march(march, 3 * dt);
   ck_assert_double_lt(lattice_distance(march, &w, wave_at, &of), 1e-12);
   dvi_march_destroy(&march);
 }
@@ -177,7 +172,7 @@ START_TEST(waves_are_exact_where_the_step_is_a_cell)
       .cells = 40, .space = weight[_i], .time = weight[_i], .step = 2 * pi / 40, .mean_rate = 1};
   dvi_march *march = lattice_march(&w);
   lattice_start(march, &w, right_wave, NULL);
-  advance(march, 60 * w.step);
+  advance_march(march, 60 * w.step);
   /* at the bound of stability, roundings of the shortest wave grow as the steps */
   ck_assert_double_lt(lattice_distance(march, &w, right_wave, NULL), 1e-11);
   dvi_march_destroy(&march);
@@ -193,7 +188,7 @@ static double error_of_wave(double space, double time, int cells, int mean_rate)
                .mean_rate = mean_rate};
   dvi_march *march = lattice_march(&w);
   lattice_start(march, &w, right_wave, NULL);
-  advance(march, 2 * pi);
+  advance_march(march, 2 * pi);
   const double error = lattice_distance(march, &w, right_wave, NULL);
   dvi_march_destroy(&march);
   return error;
@@ -207,7 +202,7 @@ static double error_at_level(double space, double time, int cells)
   w.step = 2 * pi / cells * 0.6;
   dvi_march *march = lattice_march(&w);
   lattice_start(march, &w, right_wave, NULL);
-  advance(march, cells * w.step);
+  advance_march(march, cells * w.step);
   const double error = lattice_distance(march, &w, right_wave, NULL);
   dvi_march_destroy(&march);
   return error;
@@ -267,7 +262,7 @@ START_TEST(breathers_have_known_errors)
   w.step = 4 / round(8 / (40.0 / w.cells));
   dvi_march *march = lattice_march(&w);
   lattice_start(march, &w, breather, NULL);
-  advance(march, 4);
+  advance_march(march, 4);
   ck_assert_double_eq_tol(lattice_distance(march, &w, breather, NULL), known[_i / 2].error,
                           0.005 * known[_i / 2].error);
   dvi_march_destroy(&march);
@@ -298,7 +293,7 @@ START_TEST(sine_gordon_on_a_torus_has_its_known_value)
     const int origin = 0;
     dvi_march *march = lattice_march(&w);
     lattice_start(march, &w, dimpled, NULL);
-    advance(march, 3);
+    advance_march(march, 3);
     ck_assert_int_eq(dvi_march_sample(march, DVI_FORM_A, 1, &origin, &found[k]), DVI_OK);
     dvi_march_destroy(&march);
   }
@@ -330,7 +325,7 @@ START_TEST(kinks_have_their_energy)
     dvi_march *march = NULL;
     ck_assert_int_eq(dvi_multisymplectic_create(&w.terms, &march), DVI_OK);
     lattice_start(march, &w, kink, NULL);
-    advance(march, 5);
+    advance_march(march, 5);
     const double error = fabs(observe(march, 0) - exact);
     if (before > 0) ck_assert_double_eq_tol(log2(before / error), 2, 0.1);
     ck_assert_double_lt(error, 30.0 / cells / cells * 4);

@@ -206,3 +206,33 @@ double density_at(const density_field *field, double t, const double *x)
                 dvi_last_error());
   return u;
 }
+
+int pendula_start(int64_t count, const double *x, double *f, void *user)
+{
+  (void)user;
+  for (int64_t k = 0; k < count; k++) f[k] = 1.5 + 0.5 * cos(x[k]);
+  return 0;
+}
+
+int pendula_rate(int64_t count, const double *x, double *f, void *user)
+{
+  (void)user;
+  for (int64_t k = 0; k < count; k++) f[k] = 0.3 * sin(x[k]);
+  return 0;
+}
+
+int sine_datum(int64_t count, double t, const double *x, double *datum, void *user)
+{
+  (void)user;
+  for (int64_t k = 0; k < count; k++) datum[k] = sin(t - x[k]);
+  return 0;
+}
+
+int sine_datum_rates(int64_t count, double t, const double *x, double *first, double *second,
+                     void *user)
+{
+  (void)user;
+  for (int64_t k = 0; k < count; k++) first[k] = cos(t - x[k]);
+  for (int64_t k = 0; k < count && second != NULL; k++) second[k] = -sin(t - x[k]);
+  return 0;
+}

@@ -31,6 +31,14 @@ void end_density(density_field *field);
 /* Start values as functions of x [dimension*count], like those of dvi_space_interpolate. */
 typedef int field_function(int64_t count, const double *x, double *f, void *user);
 
+/* 1.5 + 0.5 cos x, and 0.3 sin x: pendula on a circle. */
+field_function pendula_start, pendula_rate;
+
+/* Values that move, u = sin(t - x), and their derivatives in time. */
+int sine_datum(int64_t count, double t, const double *x, double *datum, void *user);
+int sine_datum_rates(int64_t count, double t, const double *x, double *first, double *second,
+                     void *user);
+
 /* Sets q and p of a field of one component by its values and rates, each NULL for 0. */
 void set_density(density_field *field, field_function *u, field_function *rate, void *user);
 
