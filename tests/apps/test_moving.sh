@@ -126,9 +126,11 @@ refused ring.yaml word 's/^moving.*/moving: slowly/' "is yes, no, or tells how" 
 refused ring.yaml key 's/kappa/kapa/' "kappa" 9:20
 refused ring.yaml negative 's/mu: 0.01/mu: -1/' 'mu is 0 or more' 9:14
 refused ring.yaml massless 's/mu: 0.01, /mu: 0, /;s/4.atan.*}/0}/' 'give mu > 0' 9:9
-refused ring.yaml leap "s/periodic/{left: {fixed: 0}}/" 'a jump is what a field on a periodic axis' 9:92
+refused ring.yaml leap "s/periodic/{left: {fixed: 0}}/" \
+  'a jump is what a field on a periodic axis' 9:92
 refused ring.yaml rate "s/d(u,x)\", at/u'\", at/" "'slope' has others" 10:45
-refused ring.yaml flux 's/^boundary.*/boundary: {left: {free: 1}}/;s/, jump.*}/}/' 'no flux and no robin' 7:11
+refused ring.yaml flux 's/^boundary.*/boundary: {left: {free: 1}}/;s/, jump.*}/}/' \
+  'no flux and no robin' 7:11
 expect 2 'frames' run ring.yaml --pvd ring.pvd
 
 finish

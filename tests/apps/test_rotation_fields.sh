@@ -78,7 +78,8 @@ expect 0 'a sheet' run sheet.yaml --final
 refused rod.yaml two 's/R: rotation/R: rotation, u: scalar/' 'is the only one of its scene' 4:9
 refused rod.yaml rate \
   "s/kappa(R,x), kappa(R,x)/omega(R), d(R[1,1]', x)*kappa(R,x)/" 'no other derivatives' 5:54
-refused rod.yaml slope 's/kappa(R,x), kappa(R,x)/d(R[1], x), d(R[1], x)/' 'no other derivatives' 5:44
+refused rod.yaml slope 's/kappa(R,x), kappa(R,x)/d(R[1], x), d(R[1], x)/' \
+  'no other derivatives' 5:44
 refused rod.yaml curved 's/kappa(R,x))\/2/kappa(R,x))^2/' 'with constant J and K' 5:10
 refused rod.yaml mixed 's/J\*omega(R))\/2/R*omega(R))/' 'with constant J and K' 5:10
 refused rod.yaml driven 's/(1 + x)/sin(t)/' 'does not depend on time' 5:10
