@@ -36,11 +36,13 @@ says err 'beyond the bound 0.299' 'the bound'
 refused sine.yaml cfl 's/^step.*/step: 5/;s/:space=exact.*//' 'beyond the bound' 9:7
 refused sine.yaml even 's/cells=21/cells=20/;s/exact/midpoint/' 'take an odd number of cells' 2:8
 refused sine.yaml quadratic 's/degree=1/degree=2/' 'on the cells of linear functions' 2:8
-refused sine.yaml bent "s/fem:degree=1/spline:degree=3/;s/d(u,x)^2/d(u,x,x)^2/" 'linear functions' 2:8
+refused sine.yaml bent "s/fem:degree=1/spline:degree=3/;s/d(u,x)^2/d(u,x,x)^2/" \
+  'linear functions' 2:8
 refused sine.yaml first "s/scalar/complex/;s/u'^2.*/u[1]'*u[2] - dot(d(u,x),d(u,x))\/2/;/^initial/d
   /^probes/d" 'one-form' 4:10
 refused sine.yaml word 's/exact/half/' '"space=half" is no option' 8:9
-refused sine.yaml mesh 's/^domain.*/mesh: {generator: disk, cells: 4}/;s/,cells=21//;/boundary/d;/probes/d' \
+refused sine.yaml mesh \
+  's/^domain.*/mesh: {generator: disk, cells: 4}/;s/,cells=21//;/boundary/d;/probes/d' \
   'a mesh has none' 1:7
 
 cat >lattice.yaml <<END
