@@ -56,6 +56,12 @@ static density_field make(const char *kind, int periodic, int fixed, const dvi_d
   return make_density(make_density_space(kind, 1, 0.25, 2, periodic), parts, 3, &left, fixed);
 }
 
+static density_field make_plane(const char *kind)
+{
+  const dvi_density_part parts[] = {kinetic_part, elastic_part, uneven_part};
+  return make_density(make_density_space(kind, 2, 0.25, 2, 0), parts, 3, NULL, 0);
+}
+
 static dvi_system_terms terms_of(const density_field *field)
 {
   dvi_system_terms terms;
@@ -74,6 +80,24 @@ START_TEST(circles_have_ranges_of_a_short_reach)
       ck_assert(terms.potentials[k].gradient_range != NULL);
       ck_assert_int_le(terms.potentials[k].reach, i < LUMPED && k == 1 ? 0 : reach[i]);
     }
+    check_density(&field, 1e-6);
+    end_density(&field);
+  }
+}
+END_TEST
+
+/* A node is coupled to the one behind the next of the next row. Gauss's points of two rows of cells
+ * touch a coordinate, and those of the nodes one. */
+START_TEST(planes_have_ranges_of_a_row_where_points_are_nodes)
+{
+  for (int lumped = 0; lumped < 2; lumped++) {
+    density_field field = make_plane(lumped ? "fem:degree=1,cells=20,lumped=yes"
+                                            : "fem:degree=1,cells=20");
+    const dvi_system_terms terms = terms_of(&field);
+    ck_assert(terms.potentials[0].gradient_range != NULL);
+    ck_assert_int_le(terms.potentials[0].reach, 22);
+    ck_assert_int_eq(terms.potentials[1].gradient_range != NULL, lumped);
+    ck_assert_int_eq(terms.potentials[1].reach, 0);
     check_density(&field, 1e-6);
     end_density(&field);
   }
@@ -186,8 +210,10 @@ START_TEST(steps_that_are_taken_together_have_the_bits_of_single_ones)
                                         "verlet:threads=2", "composition:order=4"};
   enum { MOST = 6000 };
   static double single[2 * MOST], end[2 * MOST];
-  for (int periodic = 0; periodic < 2; periodic++) {
-    density_field field = make("fem:degree=2,cells=2000,lumped=yes", periodic, 0, &uneven_part);
+  for (int kind = 0; kind < 3; kind++) { /* an interval, a circle, a plane */
+    density_field field = kind == 2
+                              ? make_plane("fem:degree=1,cells=40,lumped=yes")
+                              : make("fem:degree=2,cells=2000,lumped=yes", kind, 0, &uneven_part);
     ck_assert_int_le(field.n, MOST);
     for (int64_t i = 0; i < field.n; i++) field.q[i] = sin(0.01 * (double)i);
     for (int m = 0; m < 4; m++) {
@@ -250,6 +276,7 @@ SUITE(density_ranges)
 {
   tcase_add_test(tests, a_run_that_fails_ends_where_single_steps_end);
   tcase_add_test(tests, circles_have_ranges_of_a_short_reach);
+  tcase_add_test(tests, planes_have_ranges_of_a_row_where_points_are_nodes);
   tcase_add_test(tests, points_that_are_coordinates_give_what_others_give);
   tcase_add_test(tests, repeated_rows_have_the_bits_of_entries);
   tcase_add_test(tests, equal_cells_of_a_circle_have_one_mass);

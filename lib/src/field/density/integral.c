@@ -199,6 +199,22 @@ static int has_near_points(const dvi__integral *integral)
   return 1;
 }
 
+/* Tell if blocks of coordinates have few points of other blocks. In a plane the points of two rows
+ * of cells touch each block, unless they are nodes. */
+static int has_few_points(const dvi__integral *integral)
+{
+  enum { BLOCK = 512 };
+  const int64_t n = integral->density->unknowns;
+  int64_t points = 0, visited = 0;
+  for (int p = 0; p < integral->parts; p++) {
+    const dvi__density_part *part = integral->part[p];
+    points += part->points;
+    for (int64_t first = 0; first < n; first += BLOCK)
+      visited += part->high[(first + BLOCK < n ? first + BLOCK : n) - 1] - part->low[first];
+  }
+  return 2 * visited <= 3 * points;
+}
+
 /* ---- integrals ---- */
 
 dvi_status dvi__integral_add(dvi__integral *integral, dvi__density_part *part)
@@ -227,7 +243,7 @@ dvi_status dvi__integral_make(const dvi_density *density, double sign, unsigned 
   DVI_TRY(make_patterns(integral, second));
   find_reach(integral);
   integral->has_hessian = 1;
-  integral->has_ranges = density->dimension == 1 && 2 * integral->reach < density->unknowns &&
+  integral->has_ranges = 2 * integral->reach < density->unknowns && has_few_points(integral) &&
                          has_near_points(integral);
   return DVI_OK;
 }

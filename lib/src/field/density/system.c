@@ -261,25 +261,26 @@ static int is_autonomous(const dvi_density *d)
   return !depends;
 }
 
+/* Ranges of the quadratic potential are rows of its matrix, whatever points it has. */
 static dvi_potential quadratic_term(dvi_density *d)
 {
-  const int moves = d->quadratic.depends_on_time && !d->has_rest, is_static = is_autonomous(d);
-  return (dvi_potential){
-      .name = "quadratic",
-      .value = moves ? moving_value : quadratic_value,
-      .gradient = moves ? moving_gradient : quadratic_gradient,
-      .gradient_range = d->quadratic.has_ranges && !moves ? quadratic_gradient_range : NULL,
-      .reach = d->quadratic.has_ranges && !moves ? d->quadratic.reach : 0,
-      .hessian = quadratic_hessian,
-      .qq = {.start = d->stiffness_start, .row = d->stiffness.column},
-      .rate = is_static               ? NULL
-              : !moves                ? no_rate
-              : d->quadratic.has_rate ? moving_rate
-                                      : NULL,
-      .fast = 1,
-      .quadratic = 1,
-      .fastest = d->fastest,
-      .user = d};
+  const int moves = d->quadratic.depends_on_time && !d->has_rest, is_static = is_autonomous(d),
+            has_ranges = !moves && !d->is_fourier && 2 * d->quadratic.reach < d->unknowns;
+  return (dvi_potential){.name = "quadratic",
+                         .value = moves ? moving_value : quadratic_value,
+                         .gradient = moves ? moving_gradient : quadratic_gradient,
+                         .gradient_range = has_ranges ? quadratic_gradient_range : NULL,
+                         .reach = has_ranges ? d->quadratic.reach : 0,
+                         .hessian = quadratic_hessian,
+                         .qq = {.start = d->stiffness_start, .row = d->stiffness.column},
+                         .rate = is_static               ? NULL
+                                 : !moves                ? no_rate
+                                 : d->quadratic.has_rate ? moving_rate
+                                                         : NULL,
+                         .fast = 1,
+                         .quadratic = 1,
+                         .fastest = d->fastest,
+                         .user = d};
 }
 
 /* A Hessian is declared if the field has it, full without a pattern. */
