@@ -137,6 +137,69 @@ START_TEST(points_that_are_coordinates_give_what_others_give)
 }
 END_TEST
 
+/* V = (1 + x^3) (u^2 w + w^2). A third variable, the slope of u, does nothing. */
+static int coupled(int count, double t, const double *x, const double *z, double *l, double *l_z,
+                   double *l_zz, void *user)
+{
+  const double *u = z, *w = z + count;
+  (void)t, (void)l_zz;
+  for (int k = 0; k < count; k++) {
+    const double c = -(1 + x[k] * x[k] * x[k]);
+    if (l != NULL) l[k] = c * (u[k] * u[k] * w[k] + w[k] * w[k]);
+    if (l_z == NULL) continue;
+    l_z[k] = c * 2 * u[k] * w[k];
+    l_z[count + k] = c * (u[k] * u[k] + 2 * w[k]);
+    if (user != NULL) l_z[2 * count + k] = 0;
+  }
+  return 0;
+}
+
+static density_field make_pair(const char *kind, int periodic, int variables)
+{
+  static const dvi_jet rates[] = {{.rate = 1}, {.rate = 1, .component = 1}},
+                       values[] = {{.order = {0}}, {.component = 1}, {.order = {1}}};
+  dvi_density_part parts[] = {kinetic_part, kinetic_part, kinetic_part};
+  parts[0].variable = rates;
+  parts[1].variable = rates + 1;
+  parts[2] = (dvi_density_part){.kind = DVI_DENSITY_POTENTIAL,
+                                .variable = values,
+                                .variables = variables,
+                                .density = coupled,
+                                .user = variables == 3 ? (void *)values : NULL};
+  const dvi_density_terms terms = {.components = 2, .part = parts, .parts = 3};
+  return make_density_of(make_density_space(kind, 1, 0.25, 2, periodic), terms);
+}
+
+/* Entries are at most 9 (|2 u w| + ..) w, about 1, and are sums of two. Ranges also end between the
+ * components of a node. */
+static void compare_pairs(const char *kind, int periodic)
+{
+  density_field one = make_pair(kind, periodic, 2), other = make_pair(kind, periodic, 3);
+  const dvi_potential *a = &terms_of(&one).potentials[0], *b = &terms_of(&other).potentials[0];
+  double whole[400], second[400], part[400];
+  ck_assert_int_le(one.n, 400);
+  for (int64_t i = 0; i < one.n; i++) one.q[i] = sin(1.3 * (double)i);
+  ck_assert_int_eq(a->gradient(0, one.q, whole, a->user), 0);
+  ck_assert_int_eq(b->gradient(0, one.q, second, b->user), 0);
+  for (int64_t i = 0; i < one.n; i++) ck_assert_double_eq_tol(whole[i], second[i], 5e-16);
+  for (int first = 0; first < one.n; first += 7)
+    for (int last = first + 1; last <= one.n; last += 5) {
+      ck_assert_int_eq(a->gradient_range(0, one.q, first, last, part, a->user), 0);
+      ck_assert_mem_eq(part, whole + first, (size_t)(last - first) * sizeof *part);
+    }
+  end_density(&one);
+  end_density(&other);
+}
+
+START_TEST(points_that_are_coordinates_of_several_components_give_what_others_give)
+{
+  for (int i = 0; i < LUMPED; i++) {
+    compare_pairs(kinds[i], 0);
+    compare_pairs(kinds[i], 1);
+  }
+}
+END_TEST
+
 /* The stiffness of equal cells repeats. Its product by repeated rows is that of its entries, to the
  * last bit, and so is that of any part of it. */
 static void compare_products(const char *kind, int periodic)
@@ -278,6 +341,7 @@ SUITE(density_ranges)
   tcase_add_test(tests, circles_have_ranges_of_a_short_reach);
   tcase_add_test(tests, planes_have_ranges_of_a_row_where_points_are_nodes);
   tcase_add_test(tests, points_that_are_coordinates_give_what_others_give);
+  tcase_add_test(tests, points_that_are_coordinates_of_several_components_give_what_others_give);
   tcase_add_test(tests, repeated_rows_have_the_bits_of_entries);
   tcase_add_test(tests, equal_cells_of_a_circle_have_one_mass);
   tcase_add_test(tests, steps_that_are_taken_together_have_the_bits_of_single_ones);

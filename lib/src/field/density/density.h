@@ -38,11 +38,11 @@ typedef struct dvi__slots {
   int *qq, *qv, *vv;
 } dvi__slots;
 
-/* Points that are coordinates, in a part whose points have one at most. From `first` on the only
- * variable at point k is coordinate k - shift. `weight` is that of all these points, or 0 if they
- * differ. */
+/* Points whose variables are coordinates. From `first` on the coordinates of a point are those of
+ * the point before, plus `stride`. `weight` is that of all these points, or 0 if they differ. */
 typedef struct dvi__own_points {
-  int64_t first, shift;
+  int64_t first;
+  int stride;
   double weight;
 } dvi__own_points;
 

@@ -225,26 +225,43 @@ static dvi_status split_rows(const dvi_density *density, dvi__density_part *part
   return DVI_OK;
 }
 
+/* Tell if a variable is one coordinate at a point, and `stride` more than at the point before,
+ * unless `stride` is 0. */
+static int is_coordinate(const dvi__jet_rows *rows, int64_t k, int stride)
+{
+  const int64_t e = rows->start[k];
+  if (rows->start[k + 1] - e != 1 || rows->value[e] != 1) return 0;
+  if (rows->fixed != NULL && rows->fixed[k] != 0) return 0;
+  return stride == 0 || (rows->start[k] - rows->start[k - 1] == 1 &&
+                         rows->local[e] - rows->local[e - 1] == stride);
+}
+
+static int are_coordinates(const dvi__density_part *part, int64_t k, int stride)
+{
+  for (int a = 0; a < part->given.variables; a++)
+    if (part->rows[a].moving.rows > 0 || !is_coordinate(part->rows + a, k, stride)) return 0;
+  return 1;
+}
+
 /* Find the last points that are coordinates, while rows still have the coordinates' numbers. Where
  * most of them have one weight, those before that have another one are left out. */
 static void find_own_points(dvi__density_part *part)
 {
   const dvi__jet_rows *rows = part->rows;
   dvi__own_points *own = &part->own_points;
+  const int64_t last = part->points - 1;
   *own = (dvi__own_points){.first = part->points};
-  if (part->given.variables != 1 || rows->moving.rows > 0) return;
-  if (rows->start[part->points] > part->points) return; /* not in the order of the coordinates */
-  for (int64_t k = part->points - 1; k >= 0; k--) {
-    const int64_t e = rows->start[k];
-    if (rows->start[k + 1] - e != 1 || rows->value[e] != 1) return;
-    if (rows->fixed != NULL && rows->fixed[k] != 0) return;
-    if (k < part->points - 1 && rows->local[e] != k - own->shift) return;
-    if (k == part->points - 1) own->weight = part->weight[k];
+  if (last < 1 || part->given.variables < 1) return;
+  if (!are_coordinates(part, last, 0) || !are_coordinates(part, last - 1, 0)) return;
+  own->stride = rows->local[rows->start[last]] - rows->local[rows->start[last - 1]];
+  if (own->stride < 1) return; /* not in the order of the coordinates */
+  own->weight = part->weight[last];
+  for (int64_t k = last; k >= 0 && are_coordinates(part, k, 0); k--) {
+    if (k < last && !are_coordinates(part, k + 1, own->stride)) return;
     if (own->weight != 0 && part->weight[k] != own->weight) {
       if (k < part->points / 2) return;
       own->weight = 0;
     }
-    own->shift = k - rows->local[e];
     own->first = k;
   }
 }

@@ -179,14 +179,35 @@ static int add_rate(const block *b, double *rate)
 
 /* ---- points that are coordinates ---- */
 
-/* Return the coordinates at the block's points, or NULL if they are not there in a row or other
- * results are wanted. */
-static const double *own_coordinates(const block *b, const dvi__density_sums *s)
+/* Tell if the block's points are coordinates, of whose derivatives no others are wanted. */
+static int has_own_coordinates(const block *b, const dvi__density_sums *s)
 {
-  const dvi__own_points *own = &b->part->own_points;
-  const double *from = b->part->given.variable[0].rate ? b->at->v : b->at->q;
+  const dvi_density_part *given = &b->part->given;
   const int is_more = s->qq != NULL || s->qv != NULL || s->vv != NULL || s->rate != NULL;
-  return b->first < own->first || from == NULL || is_more ? NULL : from + (b->first - own->shift);
+  for (int a = 0; a < given->variables; a++)
+    if ((given->variable[a].rate ? b->at->v : b->at->q) == NULL) return 0;
+  return b->first >= b->part->own_points.first && !is_more;
+}
+
+/* Return the coordinate of a variable at the block's first point. */
+static int64_t first_coordinate(const block *b, int a)
+{
+  const dvi__jet_rows *rows = b->part->rows + a;
+  return list_of(b, b->first)[rows->local[rows->start[b->first]]];
+}
+
+/* Give the variables at the block's points. Those that stand in a row are not copied. */
+static const double *find_own_variables(const block *b)
+{
+  const dvi_density_part *given = &b->part->given;
+  const int64_t stride = b->part->own_points.stride;
+  for (int a = 0; a < given->variables; a++) {
+    const double *from = (given->variable[a].rate ? b->at->v : b->at->q) + first_coordinate(b, a);
+    double *z = b->z + a * b->count;
+    if (given->variables == 1 && stride == 1) return from;
+    for (int k = 0; k < b->count; k++) z[k] = from[k * stride];
+  }
+  return b->z;
 }
 
 WIDE static void add_scaled(int count, double weight, const double *restrict l_z,
@@ -195,23 +216,39 @@ WIDE static void add_scaled(int count, double weight, const double *restrict l_z
   for (int k = 0; k < count; k++) derivative[k] += weight * l_z[k];
 }
 
+/* Add w l_z of a variable to the derivatives of the coordinates in the range. */
+static void add_own_variable(const block *b, int a, double *derivative)
+{
+  const dvi__own_points *own = &b->part->own_points;
+  const int64_t stride = own->stride, shift = first_coordinate(b, a) - b->at->first,
+                size = b->at->last - b->at->first;
+  const double *l_z = b->l_z + a * b->count, weight = b->integral->sign * own->weight;
+  int first = 0, last = b->count;
+  while (first < last && shift + first * stride < 0) first++;
+  while (first < last && shift + (last - 1) * stride >= size) last--;
+  if (first == last) return;
+  derivative += shift + first * stride;
+  if (own->weight != 0 && stride == 1)
+    add_scaled(last - first, weight, l_z + first, derivative);
+  else
+    for (int k = first; k < last; k++, derivative += stride)
+      *derivative += (own->weight != 0 ? weight : b->weight[k]) * l_z[k];
+}
+
 /* Give what the general functions would give, to the last bit. */
-static int sum_own_points(block *b, const double *z, const dvi__density_sums *s)
+static int sum_own_points(block *b, const dvi__density_sums *s)
 {
   const dvi_density_part *given = &b->part->given;
-  const dvi__own_points *own = &b->part->own_points;
-  double *derivative = given->variable[0].rate ? s->v : s->q;
+  const double *z = find_own_variables(b);
   fill_places(b);
-  if (own->weight == 0 || s->value != NULL) fill_weights(b);
+  if (b->part->own_points.weight == 0 || s->value != NULL) fill_weights(b);
   const int failed = given->density(b->count, b->at->t, b->x, z, b->l, b->l_z, NULL, given->user);
   if (failed != 0) return failed;
   if (s->value != NULL) add_value(b, s->value);
-  if (derivative == NULL) return 0;
-  derivative += b->first - own->shift - b->at->first;
-  if (own->weight != 0)
-    add_scaled(b->count, b->integral->sign * own->weight, b->l_z, derivative);
-  else
-    for (int k = 0; k < b->count; k++) derivative[k] += b->weight[k] * b->l_z[k];
+  for (int a = 0; a < given->variables; a++) {
+    double *const derivative = given->variable[a].rate ? s->v : s->q;
+    if (derivative != NULL) add_own_variable(b, a, derivative);
+  }
   return 0;
 }
 
@@ -220,9 +257,8 @@ static int sum_own_points(block *b, const double *z, const dvi__density_sums *s)
 static int sum_block(block *b, const dvi__density_sums *s)
 {
   const dvi_density_part *given = &b->part->given;
-  const double *own = own_coordinates(b, s);
   lay_out(b, s);
-  if (own != NULL) return sum_own_points(b, own, s);
+  if (has_own_coordinates(b, s)) return sum_own_points(b, s);
   fill_places(b);
   fill_weights(b);
   for (int a = 0; a < given->variables; a++) gather_variable(b, a);
