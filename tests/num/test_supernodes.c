@@ -125,6 +125,27 @@ START_TEST(one_negative_direction_anywhere_is_refused)
 }
 END_TEST
 
+START_TEST(what_finds_no_memory_says_so_and_later_factors_take_none)
+{
+  net made = make_net(60, 0);
+  dvi_status status = DVI_NO_MEMORY;
+  for (long successes = 0; status == DVI_NO_MEMORY; successes++) {
+    dvi__linear *linear = NULL;
+    dvi__fail_allocations_after(successes);
+    status = dvi__linear_create(&made.pattern, DVI__LINEAR_DEFINITE, NULL, &linear);
+    if (status == DVI_OK) status = dvi__linear_factor(linear, made.values);
+    dvi__fail_allocations_after(-1);
+    const long taken = dvi__allocation_count();
+    if (status == DVI_OK) ck_assert_int_eq(dvi__linear_factor(linear, made.values), DVI_OK);
+    if (status == DVI_OK) ck_assert_int_eq(dvi__linear_solve(linear, made.b), DVI_OK);
+    ck_assert_int_eq(dvi__allocation_count(), taken);
+    dvi__linear_destroy(&linear);
+  }
+  ck_assert_int_eq(status, DVI_OK);
+  clear_net(&made);
+}
+END_TEST
+
 /* The paths to the root are 0 -> 4 -> 6, 2 -> 4 -> 6, and 1 -> 3 -> 5 -> 6. */
 START_TEST(a_postorder_has_children_right_before_their_parents)
 {
@@ -140,5 +161,6 @@ SUITE(supernodes)
   tcase_add_loop_test(tests, solutions_are_right_and_stay_so_with_the_next_factor, 0, 2);
   tcase_add_test(tests, powers_of_two_as_scales_change_no_bit);
   tcase_add_test(tests, one_negative_direction_anywhere_is_refused);
+  tcase_add_test(tests, what_finds_no_memory_says_so_and_later_factors_take_none);
   tcase_add_test(tests, a_postorder_has_children_right_before_their_parents);
 }
