@@ -125,6 +125,15 @@ static dvi_status make_first_order(dvi_density *density)
   return dvi__density_check_two_form(density);
 }
 
+/* Where quadratic parts do not depend on time, K and the load stand for their points. */
+static void forget_quadratic_points(dvi_density *density)
+{
+  dvi__integral *quadratic = &density->quadratic;
+  if (density->is_fourier || quadratic->depends_on_time) return;
+  for (int p = 0; p < quadratic->parts; p++) dvi__density_unbind(quadratic->part[p]);
+  dvi__pattern_clear(&quadratic->patterns.qq);
+}
+
 static dvi_status make_rooms(dvi_density *density)
 {
   const int64_t doubles = dvi__density_room(density);
@@ -151,6 +160,7 @@ static dvi_status make(dvi_density *density, const dvi_density_terms *terms)
   DVI_TRY(make_integrals(density));
   DVI_TRY(dvi__density_make_mass(density));
   DVI_TRY(dvi__density_make_stiffness(density));
+  forget_quadratic_points(density);
   if (density->has_rest) DVI_TRY(make_rest(density));
   DVI_TRY(dvi__density_find_fastest(density));
   return dvi__density_make_terms(density, terms->translations);

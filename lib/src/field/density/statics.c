@@ -37,16 +37,18 @@ static dvi_status add_gradient(const dvi__integral *integral, double sign, const
   return dvi__density_refuse(failed, integral->part[0]->name);
 }
 
-/* Give F at q. part has room for as many numbers. */
+/* Give F at q. part has room for as many numbers. K and the load are all of the quadratic parts but
+ * for what depends on time. */
 static dvi_status find_gradient(const dvi_density *density, const double *q, double *part,
                                 double *F)
 {
+  const int has_matrix = density->has_rest || !density->quadratic.depends_on_time;
   memset(F, 0, (size_t)density->unknowns * sizeof *F);
   DVI_TRY(add_gradient(&density->lagrangian, -1, q, part, F));
-  if (!density->has_rest) DVI_TRY(add_gradient(&density->quadratic, 1, q, part, F));
+  if (!has_matrix) DVI_TRY(add_gradient(&density->quadratic, 1, q, part, F));
   for (int i = 0; i < density->potentials; i++)
     DVI_TRY(add_gradient(density->potential + i, 1, q, part, F));
-  for (int64_t i = 0; i < density->unknowns && density->has_rest; i++) {
+  for (int64_t i = 0; i < density->unknowns && has_matrix; i++) {
     const dvi__csr *K = &density->stiffness;
     for (int64_t e = K->start[i]; e < K->start[i + 1]; e++) F[i] += K->value[e] * q[K->column[e]];
     F[i] -= density->load[i];
