@@ -170,14 +170,27 @@ START_TEST(methods_are_read_with_their_weights)
       dvi_multisymplectic_parse("multisymplectic:time=fourth,potential=levels,space=.2", &w),
       DVI_OK);
   ck_assert(w.space[1] == .2 && w.time == 1. / 12 && w.levels == 1);
-  static const char *const bad[] = {"multisymplectic:space=1/3", "multisymplectic:space=1/",
-                                    "multisymplectic:space=-.1", "multisymplectic:time=nan",
-                                    "multisymplectic:time=",     "multisymplectic:time=1/0",
-                                    "multisymplectic:time=1/4x", "multisymplectic:mass=1",
-                                    "multisymplectic2",          "verlet"};
+  ck_assert_int_eq(dvi_multisymplectic_parse("multisymplectic:space=1/6:fourth,time=0", &w),
+                   DVI_OK);
+  ck_assert(w.space[0] == 1. / 6 && w.space[1] == 1. / 12 && w.space[2] == 1. / 12);
+  ck_assert_int_eq(dvi_multisymplectic_parse("multisymplectic:space=0:.1:.2", &w), DVI_OK);
+  ck_assert(w.space[0] == 0 && w.space[1] == .1 && w.space[2] == .2);
+  static const char *const bad[] = {"multisymplectic:space=0:0:0:0",
+                                    "multisymplectic:space=0:",
+                                    "multisymplectic:time=0:0",
+                                    "multisymplectic:space=1/3",
+                                    "multisymplectic:space=1/",
+                                    "multisymplectic:space=-.1",
+                                    "multisymplectic:time=nan",
+                                    "multisymplectic:time=",
+                                    "multisymplectic:time=1/0",
+                                    "multisymplectic:time=1/4x",
+                                    "multisymplectic:mass=1",
+                                    "multisymplectic2",
+                                    "verlet"};
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
     ck_assert_int_eq(dvi_multisymplectic_parse(bad[i], &w), DVI_BAD_OPTION);
-  ck_assert(w.space[1] == .2);
+  ck_assert(w.space[2] == .2);
   ck_assert_int_eq(dvi_multisymplectic_parse(NULL, &w), DVI_BAD_ARGUMENT);
 }
 END_TEST
