@@ -303,6 +303,36 @@ START_TEST(bad_conditions_and_symmetries_are_refused)
 }
 END_TEST
 
+/* A potential that fails, or is defined for positive values alone. */
+static int failing_potential(int count, double t, const double *x, const double *z, double *l,
+                             double *l_z, double *l_zz, void *user)
+{
+  const int result = *(int *)user;
+  (void)t, (void)x;
+  for (int i = 0; i < count; i++) {
+    if (result < 0 || (result > 0 && !(z[i] > 0))) return result;
+    if (l) l[i] = log(z[i]);
+    if (l_z) l_z[i] = 1 / z[i];
+    if (l_zz) l_zz[i] = -1 / (z[i] * z[i]);
+  }
+  return 0;
+}
+
+/* Values where a density is not defined are none of a failure. */
+START_TEST(densities_that_fail_are_refused_at_create)
+{
+  int result = -7;
+  lattice w = {.step = .1, .V = "sine"};
+  lattice_terms(&w), w.part[2].density = failing_potential, w.part[2].user = &result;
+  refuse(&w.terms, DVI_CALLBACK_FAILED, "the density potential failed with -7 at t = 0");
+  for (result = 0; result < 2; result++) {
+    dvi_march *march = NULL;
+    ck_assert_msg(dvi_multisymplectic_create(&w.terms, &march) == DVI_OK, "%s", dvi_last_error());
+    dvi_march_destroy(&march);
+  }
+}
+END_TEST
+
 /* A wall, or a density, that fails from some time on. */
 static int failing_wall(int64_t count, double t, const double *x, double *datum, void *user)
 {
@@ -462,6 +492,7 @@ SUITE(lattice_marches)
   tcase_add_test(tests, bad_steps_are_refused);
   tcase_add_test(tests, bad_densities_are_refused);
   tcase_add_test(tests, bad_conditions_and_symmetries_are_refused);
+  tcase_add_test(tests, densities_that_fail_are_refused_at_create);
   tcase_add_loop_test(tests, failures_of_callbacks_leave_a_good_state, 0, 3);
   tcase_add_test(tests, failed_steps_change_no_bit_of_later_ones);
   tcase_add_test(tests, starts_beyond_the_density_leave_the_state);
