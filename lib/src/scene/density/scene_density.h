@@ -236,7 +236,7 @@ int dvi__moving_value(const dvi_scene *scene, const dvi__local *function, double
 int dvi__moving_integral(const dvi_scene *scene, const dvi__local *function, double t,
                          const double *q, double *value);
 
-/* ---- fields of rotations (rotations.c) ---- */
+/* ---- fields of rotations (rotations.c, rotations_probe.c) ---- */
 
 /* Read the start, R and omega(R). */
 bool dvi__rotations_read_start(dvi_scene *scene, const dvi__tree *section);
@@ -246,5 +246,12 @@ bool dvi__rotations_take_density(dvi__context *c, dvi__node root);
 bool dvi__rotations_make(dvi_scene *scene);
 void dvi__rotations_clear(dvi_scene *scene);
 void dvi__rotations_explain(const dvi_scene *scene, char *text, size_t size);
+
+/* Find the node of a probe, and refuse what such a probe has not. Evaluate it there. Returns as
+ * callbacks do. */
+bool dvi__rotations_check_probe(dvi_scene *scene, const dvi__local *function, const char *name,
+                                dvi__span span, const double *point, int *node);
+int dvi__rotations_value(const dvi_scene *scene, const dvi__local *function, double t, int node,
+                         const double *q, const double *p, double *value);
 
 #endif
