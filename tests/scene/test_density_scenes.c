@@ -304,10 +304,10 @@ START_TEST(the_short_form_is_a_density)
 }
 END_TEST
 
-/* The lowest energies of the oscillator are hbar sqrt(k/m) (n + 1/2), here with sqrt(k/m) = 1/2. */
-/* A soliton of Korteweg and de Vries' equation u' = D grad H, with the central difference D and
- * H = sum h ((u_{i+1} - u_i)^2/(2 h^2) - u_i^3), by the midpoint rule. w is u at every second
- * point, and differences of phi are u between them. The error is that of a program in numpy, in L2. */
+/* A soliton of Korteweg and de Vries' equation u' = D grad H, with the central difference D and H
+ * = sum h ((u_{i+1} - u_i)^2/(2 h^2) - u_i^3), by the midpoint rule. w is u at every second
+ * point, and differences of phi are u between them. The error is that of a program in numpy, in
+ * L2. */
 START_TEST(central_differences_move_a_soliton_with_their_error)
 {
   double first[8], last[8];
@@ -340,6 +340,7 @@ START_TEST(central_differences_move_a_soliton_with_their_error)
 }
 END_TEST
 
+/* The lowest energies of the oscillator are hbar sqrt(k/m) (n + 1/2), here with sqrt(k/m) = 1/2. */
 START_TEST(the_short_form_is_an_equation)
 {
   double energy[2];
