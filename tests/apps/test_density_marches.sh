@@ -44,6 +44,7 @@ refused sine.yaml bent "s/fem:degree=1/spline:degree=3/;s/d(u,x)^2/d(u,x,x)^2/" 
 refused sine.yaml first "s/scalar/complex/;s/u'^2.*/u[1]'*u[2] - dot(d(u,x),d(u,x))\/2/;/^initial/d
   /^probes/d" 'one-form' 4:10
 refused sine.yaml word 's/exact/half/' '"space=half" is no option' 8:9
+refused sine.yaml axes 's/exact/exact:0/' 'weights of 2 axes, and the field has 1' 8:9
 refused sine.yaml mesh \
   's/^domain.*/mesh: {generator: disk, cells: 4}/;s/,cells=21//;/boundary/d;/probes/d' \
   'a mesh has none' 1:7

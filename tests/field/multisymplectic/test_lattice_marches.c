@@ -172,9 +172,9 @@ START_TEST(methods_are_read_with_their_weights)
   ck_assert(w.space[1] == .2 && w.time == 1. / 12 && w.levels == 1);
   ck_assert_int_eq(dvi_multisymplectic_parse("multisymplectic:space=1/6:fourth,time=0", &w),
                    DVI_OK);
-  ck_assert(w.space[0] == 1. / 6 && w.space[1] == 1. / 12 && w.space[2] == 1. / 12);
+  ck_assert(w.space[0] == 1. / 6 && w.space[1] == 1. / 12 && w.axes == 2);
   ck_assert_int_eq(dvi_multisymplectic_parse("multisymplectic:space=0:.1:.2", &w), DVI_OK);
-  ck_assert(w.space[0] == 0 && w.space[1] == .1 && w.space[2] == .2);
+  ck_assert(w.space[0] == 0 && w.space[1] == .1 && w.space[2] == .2 && w.axes == 3);
   static const char *const bad[] = {"multisymplectic:space=0:0:0:0",
                                     "multisymplectic:space=0:",
                                     "multisymplectic:time=0:0",
@@ -227,6 +227,8 @@ START_TEST(bad_axes_and_weights_are_refused)
   refuse(&w.terms, DVI_BAD_ARGUMENT, "they ascend");
   lattice_terms(&w), w.terms.weights.space[0] = .3;
   refuse(&w.terms, DVI_BAD_ARGUMENT, "the weight of x is 0.3");
+  lattice_terms(&w), w.terms.weights.axes = 2;
+  refuse(&w.terms, DVI_BAD_ARGUMENT, "weights of 2 axes, and the field has 1");
   lattice_terms(&w), w.terms.weights.time = (double)NAN;
   refuse(&w.terms, DVI_BAD_ARGUMENT, "the weight of time is nan");
   w.axes = 3, lattice_terms(&w), w.terms.cells[0] = w.terms.cells[1] = w.terms.cells[2] = 10000000;

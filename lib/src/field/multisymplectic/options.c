@@ -43,14 +43,15 @@ static const char *read_weight(const char *text, double *weight)
   return *weight >= 0 && *weight <= 0.25 && ends(rest) ? rest : NULL;
 }
 
-/* Read the weights of the axes. The last one is that of all further axes. */
-static const char *read_axes(const char *text, double *weight)
+/* Read a weight of all axes, or one for each of some. */
+static const char *read_axes(const char *text, dvi_multisymplectic_weights *weights)
 {
   int axes = 1;
-  const char *rest = read_weight(text, weight);
+  const char *rest = read_weight(text, weights->space);
   while (rest != NULL && *rest == ':' && axes < DVI_AXES_MAX)
-    rest = read_weight(rest + 1, weight + axes++);
-  for (; axes < DVI_AXES_MAX; axes++) weight[axes] = weight[axes - 1];
+    rest = read_weight(rest + 1, weights->space + axes++);
+  weights->axes = axes > 1 ? axes : 0;
+  for (; axes < DVI_AXES_MAX; axes++) weights->space[axes] = weights->space[axes - 1];
   return rest;
 }
 
@@ -60,7 +61,7 @@ static const char *take(const char *text, dvi_multisymplectic_weights *weights)
   const char *value = behind(text, "time=");
   if (value != NULL) return read_weight(value, &weights->time);
   value = behind(text, "space=");
-  if (value != NULL) return read_axes(value, weights->space);
+  if (value != NULL) return read_axes(value, weights);
   value = behind(text, "potential=levels");
   if (value == NULL || !ends(value)) return NULL;
   weights->levels = 1;
