@@ -132,8 +132,8 @@ const char *dvi_schroedinger_method_name(int i);
  *  @retval DVI_NO_MEMORY     there is no memory
  *  @retval (others)          as the potential fails
  *
- *  dvi_march_advance returns DVI_NOT_CONVERGED if the iteration of a step does not converge, which
- *  stands then at the step before. A shorter step does. */
+ *  dvi_march_advance returns DVI_NOT_CONVERGED if neither the iteration of a step nor Newton's
+ *  method converges. The march stands then at the step before. A shorter step does. */
 dvi_status dvi_schroedinger_march(const dvi_schroedinger *equation,
                                   const dvi_schroedinger_march_options *options, dvi_march **march);
 
