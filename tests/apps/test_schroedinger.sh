@@ -79,6 +79,16 @@ says out '^mu  *14.13428708' 'the chemical potential'
 sed 's/beta: 10/beta: 5/;s/ground/{ground: 2}/' trap.yaml >two.yaml
 expect 0 'another norm' solve two.yaml
 says out '^mu  *3.1072430894' 'the same state but for its size'
+cat >wells.yaml <<END
+domain: {x: [-7, 7]}
+space: fem:degree=6,cells=30
+schroedinger: {potential: (x^2-4)^2/8, interaction: -0.1}
+boundary: {left: fixed, right: fixed}
+solve: ground
+END
+expect 0 'a state that attraction has moved to one side' solve wells.yaml
+says out '^mu  *0.87371925' 'the chemical potential of one side'
+says out '^branch  *of less energy .* a saddle beyond 0.91' 'the branch'
 cat >plate.yaml <<END
 domain: {x: [0, 8]}
 space: fem:degree=6,cells=20
@@ -89,6 +99,9 @@ END
 expect 0 'a ground state that is round' solve plate.yaml
 says out '^mu  *4.143005' 'the chemical potential in a plane'
 says out '^energy  *2.896031' 'the energy in a plane'
+sed 's/interaction: 50/interaction: -6/' plate.yaml >dense.yaml
+expect 1 'a collapse' solve dense.yaml
+says err 'in two dimensions there is no ground state with' 'the reason'
 sed 's/radial: 2/radial: 4/' plate.yaml >four.yaml
 expect 2 'four dimensions' solve four.yaml
 says err '^dvi: four.yaml:3:59: .*radial is the dimension 2 or 3' 'the dimensions that there are'

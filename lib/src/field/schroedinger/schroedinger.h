@@ -84,9 +84,6 @@ void dvi__schroedinger_measure_at(const dvi_schroedinger *s, const double *V, co
 dvi_status dvi__schroedinger_iterate_modes(const dvi_schroedinger *s, int count, double *energy,
                                            double *z);
 
-/* Give a real state the sign of dvi_schroedinger_modes. */
-void dvi__schroedinger_choose_sign(int64_t n, double *z);
-
 /* The lowest modes z [count][free], real. */
 dvi_status dvi__schroedinger_lowest(const dvi_schroedinger *s, int count, double *energy,
                                     double *z);
