@@ -60,6 +60,23 @@ about out eigenvalue 0.9295540362572 1e-12
 says out '^2,-0.05512440849' 'each state is there once'
 says shapes.csv '^x,psi_re_mode_1,psi_im_mode_1' 'their shapes'
 
+cat >noise.yaml <<END
+domain: {x: [0, 2*pi]}
+space: fourier:modes=16,points=33
+schroedinger: {interaction: 4}
+boundary: periodic
+initial: {psi: "[1, 0]"}
+method: split
+step: 0.0236
+until: 0.1
+END
+expect 0 'steps beyond the bound of a wave' run noise.yaml --final
+says err 'beyond the bound 0.0231 of the density at t = 0; noise may grow' 'a warning'
+expect 0 'an explanation' explain noise.yaml
+says out 'beyond the bound 0.0231 of the start' 'the bound'
+expect 0 'shorter steps' run noise.yaml --final --h 0.023
+if grep -q bound err; then fail 'a warning of steps below the bound'; fi
+
 cat >trap.yaml <<END
 parameters: {beta: 10}
 domain: {x: [-10, 10]}

@@ -126,9 +126,12 @@ const char *dvi_schroedinger_method_name(int i);
 
 /** Create a march (dvi/march.h). Its form A is psi [2*functions], and it has no other forms.
  *
- *  Its bound (dvi_march_facts) is infinite, but for split with an interaction on fourier. Steps
- *  above pi hbar over the largest kinetic energy T let resonances of modes grow there. The bound is
- *  that of a weak wave: beside repulsion it is pi hbar/(T + beta |psi|^2) with the wave's density.
+ *  Its bound (dvi_march_facts) is infinite, but for split with an interaction. Beyond it, small
+ *  amplitudes beside a wave of the present largest beta |psi|^2 = B are in resonance with it, and
+ *  grow. With the largest kinetic energy T of the space it is the h of
+ *  T h/hbar + 2 atan(B h/hbar) = pi on fourier, and hbar sqrt(2/(T B)) by Cayley's transform. B
+ *  counts as 0 where beta < 0. A march beyond the bound goes on all the same, because it is that of
+ *  one wave everywhere.
  *
  *  It makes whole steps. Between two of them it shows a shorter step from the earlier one, beside
  *  the state. A start leaves out what it has of fixed functions. Observables are the members of

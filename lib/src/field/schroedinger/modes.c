@@ -4,9 +4,11 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "field/algebra/largest.h"
 #include "field/algebra/vectors.h"
 #include "field/schroedinger/schroedinger.h"
 #include "num/eigen.h"
+#include "num/finite.h"
 
 enum { FULL_MOST = 400 };
 
@@ -151,6 +153,30 @@ dvi_status dvi__schroedinger_lowest(const dvi_schroedinger *s, int count, double
   if (status == DVI_OK) status = polish_all(s, count, energy, z);
   /* Energies may have changed places by roundings. */
   if (status == DVI_OK) dvi__sort_modes(s->free, count, energy, z);
+  return status;
+}
+
+/* ---- the other end ---- */
+
+dvi_status dvi__schroedinger_largest_kinetic(const dvi_schroedinger *s, double *kinetic)
+{
+  if (s->is_fourier) {
+    *kinetic = dvi__largest((size_t)s->free, s->diagonal);
+    return DVI_OK;
+  }
+  double *mass = DVI_NEW(double, s->free);
+  if (mass == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "schroedinger: no memory for %lld functions",
+                     (long long)s->free);
+  for (int64_t i = 0; i < s->free; i++) mass[i] = mass_of(s, i);
+  const dvi_matrix K = dvi__csr_view(&s->T, 1), M = {.rows = s->free,
+                                                     .columns = s->free,
+                                                     .width = 1,
+                                                     .symmetric = 1,
+                                                     .value = mass};
+  const dvi__pencil pencil = {.K = &K, .M = &M, .dimension = s->dimension};
+  const dvi_status status = dvi__largest_eigenvalue(&pencil, kinetic);
+  dvi__release(mass);
   return status;
 }
 

@@ -84,6 +84,9 @@ void dvi__schroedinger_measure_at(const dvi_schroedinger *s, const double *V, co
 dvi_status dvi__schroedinger_iterate_modes(const dvi_schroedinger *s, int count, double *energy,
                                            double *z);
 
+/* Bound the largest kinetic energy of a fourier or nodal space, by a thousandth of it. */
+dvi_status dvi__schroedinger_largest_kinetic(const dvi_schroedinger *s, double *kinetic);
+
 /* The lowest modes z [count][free], real. */
 dvi_status dvi__schroedinger_lowest(const dvi_schroedinger *s, int count, double *energy,
                                     double *z);
