@@ -60,6 +60,23 @@ about out eigenvalue 0.9295540362572 1e-12
 says out '^2,-0.05512440849' 'each state is there once'
 says shapes.csv '^x,psi_re_mode_1,psi_im_mode_1' 'their shapes'
 
+cat >noise.yaml <<END
+domain: {x: [0, 2*pi]}
+space: fourier:modes=16,points=33
+schroedinger: {interaction: 4}
+boundary: periodic
+initial: {psi: "[1, 0]"}
+method: split
+step: 0.0236
+until: 0.1
+END
+expect 0 'steps beyond the bound of a wave' run noise.yaml --final
+says err 'beyond the bound 0.0231 of the density at t = 0; noise may grow' 'a warning'
+expect 0 'an explanation' explain noise.yaml
+says out 'beyond the bound 0.0231 of the start' 'the bound'
+expect 0 'shorter steps' run noise.yaml --final --h 0.023
+if grep -q bound err; then fail 'a warning of steps below the bound'; fi
+
 cat >trap.yaml <<END
 parameters: {beta: 10}
 domain: {x: [-10, 10]}
@@ -79,6 +96,16 @@ says out '^mu  *14.13428708' 'the chemical potential'
 sed 's/beta: 10/beta: 5/;s/ground/{ground: 2}/' trap.yaml >two.yaml
 expect 0 'another norm' solve two.yaml
 says out '^mu  *3.1072430894' 'the same state but for its size'
+cat >wells.yaml <<END
+domain: {x: [-7, 7]}
+space: fem:degree=6,cells=30
+schroedinger: {potential: (x^2-4)^2/8, interaction: -0.1}
+boundary: {left: fixed, right: fixed}
+solve: ground
+END
+expect 0 'a state that attraction has moved to one side' solve wells.yaml
+says out '^mu  *0.87371925' 'the chemical potential of one side'
+says out '^branch  *of less energy .* a saddle beyond 0.91' 'the branch'
 cat >plate.yaml <<END
 domain: {x: [0, 8]}
 space: fem:degree=6,cells=20
@@ -89,6 +116,9 @@ END
 expect 0 'a ground state that is round' solve plate.yaml
 says out '^mu  *4.143005' 'the chemical potential in a plane'
 says out '^energy  *2.896031' 'the energy in a plane'
+sed 's/interaction: 50/interaction: -6/' plate.yaml >dense.yaml
+expect 1 'a collapse' solve dense.yaml
+says err 'in two dimensions there is no ground state with' 'the reason'
 sed 's/radial: 2/radial: 4/' plate.yaml >four.yaml
 expect 2 'four dimensions' solve four.yaml
 says err '^dvi: four.yaml:3:59: .*radial is the dimension 2 or 3' 'the dimensions that there are'

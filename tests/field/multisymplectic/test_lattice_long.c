@@ -1,4 +1,4 @@
-/* labels: invariant long */
+/* labels: invariant slow long */
 /* Energies over many steps. */
 #include <dvi/dvi.h>
 #include <math.h>
