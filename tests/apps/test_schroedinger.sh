@@ -34,6 +34,17 @@ expect 0 'a method of one-forms' run plane.yaml --method dg --final
 says err 'dg does not keep the norm' 'a warning'
 expect 0 'a method that keeps the norm' run plane.yaml --method vprk --final
 if grep -q norm err; then fail 'no warning'; fi
+sed 's/^probes.*/probes: {size: {integral: "dot(psi,psi)"}}/' plane.yaml >size.yaml
+for method in vprk vprk:nodes=3,tableau=lobatto-iiie vprk:projection=post; do
+  expect 0 "the norm by $method" run size.yaml --method $method --final --columns size
+  about out size 3.0787608005180 1e-13
+  expect 0 "a check of $method" check size.yaml --method $method
+  if grep -q norm err; then fail "a warning of $method"; fi
+done
+expect 0 'a check of a method that loses the norm' check size.yaml --method dg
+says err 'check: dg does not keep the norm' 'the warning of a check'
+expect 2 'a check of verlet' check size.yaml --method verlet
+says err 'verlet: the system declares a one-form' 'why verlet is refused'
 expect 2 'phases at points' run plane.yaml --method split
 says err 'points=2K+1' 'how many points there must be'
 sed 's/^method.*/method: split:order=4/' plane.yaml >split.yaml
@@ -47,6 +58,9 @@ sed 's/^domain.*/domain: {x: [0, 1]}/;s/fourier:modes=4/fem:cells=9/
 expect 2 'a boundary with data' run robin.yaml
 says err '^dvi: robin.yaml:4:11: .*psi = 0 on the boundary' 'the boundary that there may be'
 expect 2 'a step of waves' run plane.yaml --method verlet
+says err 'verlet does not keep the norm of the wave function; midpoint, gauss:stages=2' 'what does'
+expect 2 'paths of polynomials' run plane.yaml --method galerkin:degree=3,quadrature=lobatto
+says err 'lobatto does not keep the norm of the wave function; midpoint, gauss:stages=2' 'what does'
 
 cat >mathieu.yaml <<END
 domain: {x: [0, 2*pi]}
