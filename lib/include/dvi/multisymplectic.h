@@ -138,7 +138,9 @@ dvi_status dvi_multisymplectic_laws(const dvi_multisymplectic_terms *terms,
 
 /** Read a method with its weights: "multisymplectic", "multisymplectic:space=1/6,time=midpoint".
  *  `space`, of all axes, and `time` are numbers, fractions or the words trapezoid (0, the default),
- *  midpoint (1/4), exact (1/6) and fourth (1/12). potential=levels takes potentials at the levels.
+ *  midpoint (1/4), exact (1/6) and fourth (1/12). "space=1/6:0" has a weight for each axis, in
+ *  their order, and the last one is that of all further axes. potential=levels takes potentials at
+ *  the levels.
  *
  *  @param[out] weights  unchanged on failure
  *  @retval DVI_BAD_OPTION    it is another method, or has another option or value

@@ -115,8 +115,7 @@ DVI__EXPR_INLINE void fill_up(int lanes, int width, double *to)
 DVI__EXPR_INLINE void sines_and_cosines(int width, const double *restrict angle,
                                         double *restrict sine, double *restrict cosine)
 {
-  const int plain = dvi__count_plain_angles(width, angle);
-  dvi__plain_sines(width, angle, sine, cosine);
+  const int plain = dvi__plain_sines(width, angle, sine, cosine);
   for (int k = 0; plain < width && k < width; k++) {
     sine[k] = dvi_sin(angle[k]);
     cosine[k] = dvi_cos(angle[k]);
@@ -125,15 +124,13 @@ DVI__EXPR_INLINE void sines_and_cosines(int width, const double *restrict angle,
 
 DVI__EXPR_INLINE void sines(int width, const double *restrict angle, double *restrict sine)
 {
-  const int plain = dvi__count_plain_angles(width, angle);
-  dvi__plain_sine(width, 0, angle, sine);
+  const int plain = dvi__plain_sine(width, 0, angle, sine);
   for (int k = 0; plain < width && k < width; k++) sine[k] = dvi_sin(angle[k]);
 }
 
 DVI__EXPR_INLINE void cosines(int width, const double *restrict angle, double *restrict cosine)
 {
-  const int plain = dvi__count_plain_angles(width, angle);
-  dvi__plain_sine(width, 1, angle, cosine);
+  const int plain = dvi__plain_sine(width, 1, angle, cosine);
   for (int k = 0; plain < width && k < width; k++) cosine[k] = dvi_cos(angle[k]);
 }
 

@@ -295,11 +295,12 @@ typedef struct group_table {
   int *group;    /* [size] number + 1, or 0 */
 } group_table;
 
+/* Lists of neighbours stand near each other in the table, so that memory is read in order. */
 static uint64_t hash_list(const int *list, int count)
 {
-  uint64_t hash = 14695981039346656037u;
-  for (int i = 0; i < count; i++) hash = (hash ^ (uint64_t)list[i]) * 1099511628211u;
-  return hash ^ (hash >> 29);
+  uint64_t hash = 0;
+  for (int i = 0; i < count; i++) hash += (uint64_t)list[i];
+  return hash;
 }
 
 static int is_list_of(const dvi__point_groups *g, int group, const int *list, int count)

@@ -61,15 +61,30 @@ WIDE static void add_column(int64_t count, double value, const double *restrict 
   for (int64_t k = 0; k < count; k++) y[k] += value * q[k];
 }
 
-/* Multiply rows first to last-1, which are all the same one. */
+/* Set y to the sum of three products, in this order, from 0 on. */
+WIDE static void add_three(int64_t count, const double *restrict value, const double *restrict one,
+                           const double *restrict two, const double *restrict three,
+                           double *restrict y)
+{
+  for (int64_t k = 0; k < count; k++)
+    y[k] = ((0 + value[0] * one[k]) + value[1] * two[k]) + value[2] * three[k];
+}
+
+/* Multiply rows first to last-1, which are all the same one. Rows of three entries are common. */
 static void multiply_equal(const stencil *s, int64_t first, int64_t last, const double *q,
                            double *y)
 {
   for (int64_t i = first; i < last; i += BLOCK, y += BLOCK) {
     const int64_t count = last - i < BLOCK ? last - i : BLOCK;
-    memset(y, 0, (size_t)count * sizeof *y);
-    for (int64_t e = 0; e < s->count; e++)
-      add_column(count, s->value[e], q + i + (s->column[e] - s->row), y);
+    const double *at = q + i - s->row;
+    int64_t e = 0;
+    if (s->count < 3) {
+      memset(y, 0, (size_t)count * sizeof *y);
+    } else {
+      add_three(count, s->value, at + s->column[0], at + s->column[1], at + s->column[2], y);
+      e = 3;
+    }
+    for (; e < s->count; e++) add_column(count, s->value[e], at + s->column[e], y);
   }
 }
 

@@ -103,8 +103,7 @@ static void imex_explain(const dvi__stepper *self, dvi__text *text)
                 "solver: fast potentials are quadratic: one linear system a step, %d x %d with %d "
                 "entries, factored once for all steps of a length (%s)\n",
                 pattern->columns, pattern->columns, dvi__pattern_entries(pattern),
-                dvi__modified_mass_kind(own->mass) == DVI__LINEAR_DENSE ? "dense, LAPACK"
-                                                                        : "sparse, KLU");
+                dvi__modified_mass_solver(own->mass));
 }
 
 const dvi__method dvi__imex = {

@@ -49,6 +49,16 @@ static dvi_status look_at_mass(dvi__modified_mass *m)
   return DVI_OK;
 }
 
+/* Prefer L D L^T for a sparse matrix that has to be positive definite. LU takes twice the memory
+ * and the operations, and a system of equations then takes half as long again. */
+static dvi_status prefer_definite(dvi__modified_mass *m)
+{
+  dvi__linear **linear = &m->kept[0].linear;
+  if (!m->is_positive || m->full != NULL) return DVI_OK;
+  dvi__linear_destroy(linear);
+  return dvi__linear_create(&m->parts.pattern, DVI__LINEAR_DEFINITE, m->counters, linear);
+}
+
 static dvi_status modified_mass_initialise(dvi__modified_mass *m, const dvi_system *system,
                                            dvi_counters *counters)
 {
@@ -59,7 +69,8 @@ static dvi_status modified_mass_initialise(dvi__modified_mass *m, const dvi_syst
   m->counters = counters;
   m->count = 1;
   DVI_TRY(dvi__linear_create(&m->parts.pattern, DVI__LINEAR_AUTO, counters, &m->kept[0].linear));
-  return look_at_mass(m);
+  DVI_TRY(look_at_mass(m));
+  return prefer_definite(m);
 }
 
 dvi_status dvi__modified_mass_create(const dvi_system *system, dvi_counters *counters,
@@ -91,9 +102,9 @@ dvi_status dvi__modified_mass_keep(dvi__modified_mass *m, int count)
   const dvi__linear_kind kind = dvi__linear_kind_of(first);
   for (; m->count < count; m->count++) {
     dvi__linear **linear = &m->kept[m->count].linear;
-    DVI_TRY(kind == DVI__LINEAR_DENSE
-                ? dvi__linear_create(&m->parts.pattern, kind, m->counters, linear)
-                : dvi__linear_create_like(first, kind, m->counters, linear));
+    DVI_TRY(kind == DVI__LINEAR_SPARSE
+                ? dvi__linear_create_like(first, kind, m->counters, linear)
+                : dvi__linear_create(&m->parts.pattern, kind, m->counters, linear));
   }
   return DVI_OK;
 }
@@ -141,7 +152,7 @@ const dvi__pattern *dvi__modified_mass_pattern(const dvi__modified_mass *m)
   return &m->parts.pattern;
 }
 
-dvi__linear_kind dvi__modified_mass_kind(const dvi__modified_mass *m)
+const char *dvi__modified_mass_solver(const dvi__modified_mass *m)
 {
-  return dvi__linear_kind_of(m->kept[0].linear);
+  return dvi__linear_name(m->kept[0].linear);
 }

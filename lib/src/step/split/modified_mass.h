@@ -24,6 +24,7 @@ dvi_status dvi__modified_mass_keep(dvi__modified_mass *mass, int count);
 dvi_status dvi__modified_mass_solve(dvi__modified_mass *mass, double h, double *x);
 
 const dvi__pattern *dvi__modified_mass_pattern(const dvi__modified_mass *mass);
-dvi__linear_kind dvi__modified_mass_kind(const dvi__modified_mass *mass);
+/* Describe the solver in words. */
+const char *dvi__modified_mass_solver(const dvi__modified_mass *mass);
 
 #endif
