@@ -298,8 +298,8 @@ static void check_error_of_solitons(const char *method, double step, double expe
   ck_assert_msg(fabs(error / expected - 1) < 5e-3, "%s at %g: %.4g", method, step, error);
 }
 
-/* Errors of an independent program with 512 points, whose last digit is half of the tolerance. Longer
- * steps are in tests/apps/test_schroedinger.sh. */
+/* Errors of an independent program with 512 points, whose last digit is half of the tolerance.
+ * Longer steps are in tests/apps/test_schroedinger.sh. */
 START_TEST(solitons_go_through_their_peak_as_an_independent_program_finds)
 {
   check_error_of_solitons("split", 0.001, 1.77e-4);
