@@ -405,7 +405,7 @@ START_TEST(attraction_leads_to_one_side_of_a_double_well)
   ck_assert_double_eq_tol(state.mu, wells[well].mu, well == 0 ? 1e-9 : 1e-11);
   ck_assert_double_eq_tol(state.energy, wells[well].energy, well == 0 ? 1e-9 : 1e-11);
   ck_assert_double_eq_tol(fabs(v.position[0]), wells[well].place, 1e-8);
-  ck_assert_double_eq_tol(state.followed, wells[well].followed, 4e-3);
+  ck_assert_double_eq_tol(state.followed, wells[well].followed, 1e-3);
   free(psi);
   free_quantum(&q);
 }
