@@ -15,7 +15,7 @@
 #include "field/algebra/vectors.h"
 #include "field/schroedinger/ground.h"
 
-enum { LOWEST = 2, SADDLES = 4, DESCENTS = 3, STEPS = 4000, HALVINGS = 40, LENGTHS = 38 };
+enum { LOWEST = 2, SADDLES = 4, DESCENTS = 7, STEPS = 4000, HALVINGS = 40, LENGTHS = 38 };
 
 dvi_status dvi__ground_is_minimum(dvi__ground *g, int *is_minimum)
 {
@@ -114,18 +114,23 @@ static dvi_status descend(dvi__ground *g, double small)
   return DVI_OK;
 }
 
-/* Newton's method from lower and lower states. */
+/* Newton's method from lower and lower states, until it does not lead up again. */
 static dvi_status settle_down(dvi__ground *g)
 {
+  const size_t size = (size_t)g->s->free * sizeof *g->z;
   dvi_status status = DVI_NOT_CONVERGED;
-  double small = 1e-3;
-  for (int i = 0; i < DESCENTS && status != DVI_OK; i++, small *= 1e-2) {
+  double small = 0.1;
+  for (int i = 0; i < DESCENTS && status != DVI_OK; i++, small *= 0.1) {
     DVI_TRY(descend(g, small));
-    memcpy(g->good, g->z, (size_t)g->s->free * sizeof *g->z);
+    const double before = dvi__ground_energy(g);
+    memcpy(g->good, g->z, size);
     status = dvi__ground_converge(g);
     if (status != DVI_OK && status != DVI_NOT_CONVERGED && status != DVI_SINGULAR) return status;
-    if (status != DVI_OK) memcpy(g->z, g->good, (size_t)g->s->free * sizeof *g->z);
-    if (status != DVI_OK) dvi__ground_settle(g);
+    if (status == DVI_OK && dvi__ground_energy(g) > before + 1e-12 * fabs(before))
+      status = DVI_NOT_CONVERGED;
+    if (status == DVI_OK) return DVI_OK;
+    memcpy(g->z, g->good, size);
+    dvi__ground_settle(g);
   }
   return status;
 }

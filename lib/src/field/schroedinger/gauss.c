@@ -40,16 +40,44 @@ static void integrate_basis(int s, const double *c, const double *b, double (*A)
     }
 }
 
-/* Solve A^T d = b. */
-static void find_weights(dvi__gauss *g, const double *b)
+/* Choose what is missing of a_ij and a_ji so that b_i a_ij + b_j a_ji = b_i b_j. */
+static void find_rests(dvi__gauss *g, const double *b)
+{
+  for (int i = 0; i < g->stages; i++)
+    for (int j = 0; j <= i; j++) {
+      const dvi__twofold ij = dvi__exact_product(b[i], g->A[i][j]),
+                         ji = dvi__exact_product(b[j], g->A[j][i]),
+                         wanted = dvi__exact_product(b[i], b[j]),
+                         more = dvi__twofold_plus(dvi__twofold_plus(ij, ji),
+                                                  dvi__twofold_scaled(wanted, -1));
+      g->A_rest[i][j] = -more.head / (2 * b[i]);
+      g->A_rest[j][i] = -more.head / (2 * b[j]);
+    }
+}
+
+/* Solve A^T x = y, in place. */
+static void solve_transposed(const dvi__gauss *g, double *x)
 {
   double transposed[MOST * MOST];
   int pivot[MOST];
-  for (int j = 0; j < g->stages; j++) {
-    g->d[j] = b[j];
+  for (int j = 0; j < g->stages; j++)
     for (int i = 0; i < g->stages; i++) transposed[i * g->stages + j] = g->A[i][j];
+  (void)dvi__dense_solve(g->stages, transposed, pivot, x); /* A of Gauss is regular */
+}
+
+/* Solve A^T d = b, with one correction beyond roundings. */
+static void find_weights(dvi__gauss *g, const double *b)
+{
+  for (int j = 0; j < g->stages; j++) g->d[j] = b[j];
+  solve_transposed(g, g->d);
+  for (int j = 0; j < g->stages; j++) {
+    dvi__twofold left = {b[j], 0};
+    for (int i = 0; i < g->stages; i++)
+      left = dvi__twofold_less_product(left, (dvi__twofold){g->A[i][j], g->A_rest[i][j]},
+                                       (dvi__twofold){g->d[i], 0});
+    g->d_rest[j] = left.head;
   }
-  (void)dvi__dense_solve(g->stages, transposed, pivot, g->d); /* A of Gauss is regular */
+  solve_transposed(g, g->d_rest);
 }
 
 /* Put a pair a +- ib, whose real vectors are columns j and j+1 of X and rows of its inverse. */
@@ -97,6 +125,7 @@ static dvi_status find_coefficients(dvi__gauss *g)
   double b[MOST];
   DVI_TRY(dvi_quadrature(DVI_GAUSS, g->stages, g->node, b));
   integrate_basis(g->stages, g->node, b, g->A);
+  find_rests(g, b);
   find_weights(g, b);
   return diagonalise(g);
 }
@@ -182,9 +211,13 @@ dvi_status dvi__gauss_step(dvi__gauss *g, double t, double *z, double *compensat
   }
   DVI_TRY(dvi__gauss_solve_stages(g, t, z));
   for (int64_t i = 0; i < n; i++) {
-    double change = 0;
-    for (int j = 0; j < g->stages; j++) change += g->d[j] * g->Z[j * n + i];
+    double change = 0, rest = 0;
+    for (int j = 0; j < g->stages; j++) {
+      change += g->d[j] * g->Z[j * n + i];
+      rest += g->d_rest[j] * g->Z[j * n + i];
+    }
     dvi__add_compensated(z + i, compensation + i, change);
+    dvi__add_compensated(z + i, compensation + i, rest);
   }
   return DVI_OK;
 }

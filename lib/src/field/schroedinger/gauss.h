@@ -9,6 +9,9 @@ struct dvi__gauss {
   const dvi_schroedinger *s;
   int stages;
   double h, node[DVI__STAGES_MAX], A[DVI__STAGES_MAX][DVI__STAGES_MAX], d[DVI__STAGES_MAX];
+  /* What rounding has taken from A and d. With it b_i a_ij + b_j a_ji = b_i b_j for b = A^T d,
+   * which keeps quadratic invariants, holds to 1e-30. */
+  double A_rest[DVI__STAGES_MAX][DVI__STAGES_MAX], d_rest[DVI__STAGES_MAX];
   double complex lambda[DVI__STAGES_MAX], X[DVI__STAGES_MAX][DVI__STAGES_MAX],
       inverse[DVI__STAGES_MAX][DVI__STAGES_MAX];
   dvi__shifted *solver;

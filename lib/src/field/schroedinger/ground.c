@@ -149,12 +149,12 @@ static dvi_status go_on(dvi__ground *g, int *is_saddle)
   return is_minimum ? DVI_OK : DVI_NOT_CONVERGED;
 }
 
-/* Follow the state to the whole interaction, or to where it is lost, or no minimum any more. Its
- * last place is known to a thousandth then, and z is the state there. */
+/* Follow the state to the whole interaction, or to where it is lost, or no minimum any more. That
+ * place is known to a thousandth then, four times the last step, and z is the state there. */
 static dvi_status follow(dvi__ground *g)
 {
   const size_t size = (size_t)g->s->free * sizeof *g->z;
-  const double least_step = 1e-6, near = 1e-3;
+  const double least_step = 1e-6, near = 2.5e-4;
   double step = 1;
   int is_saddle = 0;
   memcpy(g->good, g->z, size);

@@ -17,6 +17,7 @@
 
 #include "core/status.h"
 #include "field/schroedinger/gauss.h"
+#include "num/compensated.h"
 #include "num/finite.h"
 
 enum { ITERATIONS = 200, WINDOW = 4 };
@@ -36,20 +37,32 @@ static void act(dvi__gauss *g, const double *Z)
   }
 }
 
-/* R_i = M Z_i + i h/hbar sum_j a_ij HZ_j, with i (x + iy) = -y + ix. */
+/* y += i a x, with i (x + iy) = -y + ix. */
+static void add_turned(int64_t n, double a, const double *x, double *y)
+{
+  for (int64_t k = 0; k < n; k++) {
+    y[k] -= a * x[n + k];
+    y[n + k] += a * x[k];
+  }
+}
+
+/* R_i = M Z_i + i h/hbar sum_j a_ij HZ_j. What is missing of the coefficients comes last, when
+ * their large parts have cancelled. */
 static void find_residual(dvi__gauss *g, const double *Z)
 {
   const int64_t n = g->s->free;
+  const double step = g->h / g->s->hbar;
   for (int i = 0; i < g->stages; i++) {
-    double *R = g->R + 2 * i * n;
+    double *R = g->R + 2 * i * n, *rest = g->mixed;
+    memset(rest, 0, (size_t)(2 * n) * sizeof *rest);
     for (int c = 0; c < 2; c++) dvi__schroedinger_mass(g->s, Z + (2 * i + c) * n, R + c * n);
     for (int j = 0; j < g->stages; j++) {
-      const double by = g->h / g->s->hbar * g->A[i][j], *H = g->HZ + 2 * j * n;
-      for (int64_t k = 0; k < n; k++) {
-        R[k] -= by * H[n + k];
-        R[n + k] += by * H[k];
-      }
+      const dvi__twofold by = dvi__exact_product(step, g->A[i][j]);
+      const double missing = by.tail + step * g->A_rest[i][j];
+      add_turned(n, by.head, g->HZ + 2 * j * n, R);
+      if (missing != 0) add_turned(n, missing, g->HZ + 2 * j * n, rest);
     }
+    for (int64_t k = 0; k < 2 * n; k++) R[k] += rest[k];
   }
 }
 
