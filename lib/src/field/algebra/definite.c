@@ -8,7 +8,7 @@
 
 /* Largest numbers of unknowns for a factor. The factor of a mesh grows as n log n in two dimensions
  * and as n^(4/3) in three, its operations as n^(3/2) and n^2. */
-enum { MOST_IN_PLANE = 400000, MOST_IN_SPACE = 15000 };
+enum { MOST_IN_PLANE = 1000000, MOST_IN_SPACE = 15000 };
 
 static const double roundoff = 1e-15;
 

@@ -121,13 +121,22 @@ static double length_of(int64_t n, const double *x)
   return sqrt(sum);
 }
 
+/* A minimum has a positive definite Hessian, whose factor takes less. */
+static dvi_status factor(const dvi_density *density, const dvi_matrix *H, dvi__definite *solver)
+{
+  dvi_status status = DVI_SINGULAR;
+  if (!dvi__definite_iterates(H->rows, density->dimension))
+    status = dvi__definite_create(H, density->dimension, solver);
+  return status == DVI_SINGULAR ? dvi__regular_create(H, solver) : status;
+}
+
 static dvi_status find_direction(search *s)
 {
   dvi__csr H = {0};
   dvi__definite solver = {0};
   DVI_TRY(dvi__density_hessian(s->density, s->q, &H));
   const dvi_matrix view = dvi__csr_view(&H, 1);
-  dvi_status status = dvi__regular_create(&view, &solver);
+  dvi_status status = factor(s->density, &view, &solver);
   if (status == DVI_OK) status = dvi__definite_solve(&solver, s->F, s->d, NULL);
   dvi__definite_clear(&solver);
   dvi__csr_clear(&H);

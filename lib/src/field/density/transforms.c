@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "field/density/density.h"
+#include "num/simd/wide.h"
 
 /* What the room of a part has. */
 typedef struct spread {
@@ -78,6 +79,12 @@ static void add_transposed(const spread *s, int a, const double *values, int64_t
     if (number[i] >= first && number[i] < last) derivative[number[i] - first] += s->U[i];
 }
 
+WIDE static void weigh(int64_t points, double sign, const double *restrict weight,
+                       double *restrict values)
+{
+  for (int64_t k = 0; k < points; k++) values[k] *= sign * weight[k];
+}
+
 static void add_first(const spread *s, const dvi__density_point *at, const dvi__density_sums *sums)
 {
   const int64_t points = s->part->points;
@@ -85,7 +92,7 @@ static void add_first(const spread *s, const dvi__density_point *at, const dvi__
     double *const derivative = s->part->given.variable[a].rate ? sums->v : sums->q;
     double *l_z = s->l_z + a * points;
     if (derivative == NULL) continue;
-    for (int64_t k = 0; k < points; k++) l_z[k] *= s->sign * s->part->weight[k];
+    weigh(points, s->sign, s->part->weight, l_z);
     add_transposed(s, a, l_z, at->first, at->last, derivative);
   }
 }

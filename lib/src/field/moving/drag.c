@@ -5,6 +5,7 @@
  *
  * A slope of one cell would make w jump at nodes, and a wave that travels with its nodes free of
  * losses. R is a square, so that energy is lost at the rate 2R, as by nu int u_tx^2. */
+#include <stddef.h>
 #include <string.h>
 
 #include "field/moving/moving.h"
@@ -52,8 +53,9 @@ static recovered node_slope(const dvi_moving *m, const double *y, int at, int co
   return s;
 }
 
-/* With r = w_1 - w_0 = g.v, the force is -(nu/h) r g. */
-static void add_drag(const dvi_moving *m, int component, const recovered *slope, drag *d)
+/* With r = w_1 - w_0 = g.v, the force is -(nu/h) r g. Derivatives are added if they are wanted. */
+static void add_drag(const dvi_moving *m, int component, const recovered *slope, int with_second,
+                     drag *d)
 {
   const double sign[2] = {-1, 1}, *rate = d->y + d->n;
   const int x[2] = {m->numbers, 2 * m->numbers};
@@ -64,21 +66,22 @@ static void add_drag(const dvi_moving *m, int component, const recovered *slope,
     g[x[a] + 1 + component] = sign[a];
     r += sign[a] * (rate[x[a] + 1 + component] - slope[a].value * rate[x[a]]);
   }
+  for (int i = 0; i < d->n; i++) d->force[i] += factor * r * g[i];
+  if (!with_second) return;
   for (int j = 0; j < d->n; j++) r_q[j] = slope[0].by[j] * rate[x[0]] - slope[1].by[j] * rate[x[1]];
   for (int a = 0; a < 2; a++) r_q[x[a]] -= sign[a] * r / h;
-  for (int i = 0; i < d->n; i++) {
-    d->force[i] += factor * r * g[i];
+  for (int i = 0; i < d->n; i++)
     for (int j = 0; j < d->n && g[i] != 0; j++) {
       d->by_q[i][j] += factor * g[i] * r_q[j];
       d->by_v[i][j] += factor * g[i] * g[j];
     }
-  }
   for (int a = 0; a < 2; a++)
     for (int j = 0; j < d->n; j++) d->by_q[x[a]][j] -= factor * r * sign[a] * slope[a].by[j];
 }
 
 /* Read the nodes around cell k. Those beyond an end are images of the end, and are not used. */
-static int gather(const dvi_moving *m, const dvi__moving_state *state, int k, drag *d)
+static int gather(const dvi_moving *m, const dvi__moving_state *state, int k, int with_second,
+                  drag *d)
 {
   double y[2 * MOST];
   const int first = m->periodic || k > 0 ? 0 : 1;
@@ -86,20 +89,21 @@ static int gather(const dvi_moving *m, const dvi__moving_state *state, int k, dr
   const int read = (last - first) * m->numbers;
   const int returned = dvi__moving_gather(m, state, m->drag.corner + AROUND * k + first,
                                           last - first, y);
-  memset(d, 0, sizeof *d);
+  memset(d, 0, with_second ? sizeof *d : offsetof(drag, by_q));
   d->n = AROUND * m->numbers;
   memcpy(d->y + first * m->numbers, y, (size_t)read * sizeof *y);
   memcpy(d->y + d->n + first * m->numbers, y + read, (size_t)read * sizeof *y);
   return returned;
 }
 
-static int evaluate(const dvi_moving *m, const dvi__moving_state *state, int k, drag *d)
+static int evaluate(const dvi_moving *m, const dvi__moving_state *state, int k, int with_second,
+                    drag *d)
 {
-  const int returned = gather(m, state, k, d);
+  const int returned = gather(m, state, k, with_second, d);
   for (int c = 0; c < m->components && returned == 0; c++) {
     const recovered slope[2] = {node_slope(m, d->y, 1, c, !m->periodic && k == 0),
                                 node_slope(m, d->y, 2, c, !m->periodic && k + 1 == m->cells)};
-    add_drag(m, c, slope, d);
+    add_drag(m, c, slope, with_second, d);
   }
   return returned;
 }
@@ -110,7 +114,7 @@ int dvi__moving_drag(double t, const double *q, const double *v, double *F, void
   memset(F, 0, (size_t)m->unknowns * sizeof *F);
   for (int k = 0; k < m->cells; k++) {
     drag d;
-    const int returned = evaluate(m, &(dvi__moving_state){t, q, v}, k, &d);
+    const int returned = evaluate(m, &(dvi__moving_state){t, q, v}, k, 0, &d);
     if (returned != 0) return returned;
     for (int i = 0; i < d.n; i++) {
       const int node = m->drag.corner[AROUND * k + i / m->numbers].node;
@@ -130,7 +134,7 @@ int dvi__moving_drag_jacobian(double t, const double *q, const double *v, double
   memset(F_v, 0, bytes);
   for (int k = 0; k < m->cells; k++) {
     drag d;
-    const int returned = evaluate(m, &(dvi__moving_state){t, q, v}, k, &d);
+    const int returned = evaluate(m, &(dvi__moving_state){t, q, v}, k, 1, &d);
     if (returned != 0) return returned;
     const int *entry = m->drag.entry + (size_t)k * (size_t)d.n * (size_t)d.n;
     for (int i = 0; i < d.n; i++)

@@ -119,15 +119,16 @@ static double norm_of(const dvi__line *line, int64_t i)
 
 /* Add the coefficients of one side to those of the other without a derivative, where all but the
  * first have one factor. */
-static void scale(const dvi__line *line, const double *from, int64_t from_stride, double *to,
-                  int64_t to_stride)
+static void scale(const dvi__line *line, const double *restrict from, int64_t from_stride,
+                  double *restrict to, int64_t to_stride)
 {
   const double norm = norm_of(line, 1);
+  const int64_t functions = line->functions;
   to[0] += norm_of(line, 0) * from[0];
   if (from_stride == 1 && to_stride == 1)
-    for (int64_t i = 1; i < line->functions; i++) to[i] += norm * from[i];
+    for (int64_t i = 1; i < functions; i++) to[i] += norm * from[i];
   else
-    for (int64_t i = 1; i < line->functions; i++) to[i * to_stride] += norm * from[i * from_stride];
+    for (int64_t i = 1; i < functions; i++) to[i * to_stride] += norm * from[i * from_stride];
 }
 
 /* Neighbouring lines of an array, whose numbers along the axis are `stride` apart. Up to 8 at a
@@ -163,8 +164,11 @@ static void add_analysis(const dvi__line *line, int order, const double *values,
 {
   const int64_t points = line->cell_points;
   const double norm = norm_of(line, 1);
-  for (int64_t j = 0; j < points; j++)
-    for (int q = 0; q < b.lines; q++) copy[q * points + j] = values[j * b.stride + q];
+  if (b.stride == 1)
+    memcpy(copy, values, (size_t)points * sizeof *copy);
+  else
+    for (int64_t j = 0; j < points; j++)
+      for (int q = 0; q < b.lines; q++) copy[q * points + j] = values[j * b.stride + q];
   for (int q = 0; q < b.lines; q++) dvi__fft_analyse(line->own, copy + q * points, work);
   for (int q = 0; q < b.lines && order == 0; q++)
     scale(line, copy + q * points, 1, U + q, b.stride);

@@ -23,7 +23,8 @@ void dvi__fourier_destroy(dvi__fourier **transform);
 /* Return the doubles of work that it needs, at least 2 n. */
 size_t dvi__fourier_work(const dvi__fourier *transform);
 
-/* Transform z [2 n]. Returns the place of the result, which is z or work. */
+/* Set z [2 n] to Z_k = sum_j z_j exp(sign 2 pi i j k/n), unscaled, with sign -1 or 1. Returns the
+ * place of the result, which is z or work. */
 double *dvi__fourier_transform(const dvi__fourier *transform, int sign, double *z, double *work);
 
 /* Give exp(2 pi i k/n) for k, n >= 0, right to the last digit. */

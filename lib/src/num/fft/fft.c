@@ -16,9 +16,8 @@
 
 struct dvi__fft {
   size_t n;
-  dvi__fourier *whole; /* of n points */
-  dvi__fourier *half;  /* of n/2 points, NULL for an odd n */
-  double *root;        /* [2 (n/4 + 1)] exp(2 pi i k/n), for an even n */
+  dvi__fourier *complex; /* of n/2 points for an even n, else of n */
+  double *root;          /* [2 (n/4 + 1)] exp(2 pi i k/n) for an even n, else NULL */
 };
 
 /* ---- plan ---- */
@@ -26,9 +25,8 @@ struct dvi__fft {
 static dvi_status fft_fill(dvi__fft *plan)
 {
   const size_t n = plan->n;
-  DVI_TRY(dvi__fourier_create(n, &plan->whole));
+  DVI_TRY(dvi__fourier_create(n % 2 == 0 ? n / 2 : n, &plan->complex));
   if (n % 2 != 0) return DVI_OK;
-  DVI_TRY(dvi__fourier_create(n / 2, &plan->half));
   plan->root = DVI_NEW(double, 2 * (n / 4 + 1));
   if (plan->root == NULL)
     return dvi__fail(DVI_NO_MEMORY, "Fourier transform: no memory for %zu", n);
@@ -53,8 +51,7 @@ dvi_status dvi__fft_create(int n, dvi__fft **plan)
 void dvi__fft_destroy(dvi__fft **plan)
 {
   if (*plan == NULL) return;
-  dvi__fourier_destroy(&(*plan)->whole);
-  dvi__fourier_destroy(&(*plan)->half);
+  dvi__fourier_destroy(&(*plan)->complex);
   dvi__release((*plan)->root);
   dvi__release(*plan);
   *plan = NULL;
@@ -63,10 +60,8 @@ void dvi__fft_destroy(dvi__fft **plan)
 /* Odd lengths keep n complex numbers there, even ones n real numbers. */
 int dvi__fft_work(const dvi__fft *plan)
 {
-  const size_t whole = dvi__fourier_work(plan->whole);
-  if (plan->half == NULL) return (int)(2 * plan->n + whole);
-  const size_t half = plan->n + dvi__fourier_work(plan->half);
-  return (int)(whole > half ? whole : half);
+  const size_t kept = plan->n % 2 == 0 ? plan->n : 2 * plan->n;
+  return (int)(kept + dvi__fourier_work(plan->complex));
 }
 
 int dvi__fft_length(int n)
@@ -81,12 +76,6 @@ int dvi__fft_length(int n)
 }
 
 /* ---- transforms ---- */
-
-void dvi__fft_complex(const dvi__fft *plan, int sign, double *z, double *work)
-{
-  const double *result = dvi__fourier_transform(plan->whole, sign, z, work);
-  if (result != z) memcpy(z, result, 2 * plan->n * sizeof(double));
-}
 
 /* Give the sums of k and m-k from Z_k and Z_(m-k), the last two arguments. */
 static void part(const double *w, const double *Z, const double *back, double *sum,
@@ -104,7 +93,7 @@ static void part(const double *w, const double *Z, const double *back, double *s
 static void analyse_even(const dvi__fft *plan, double *x, double *work)
 {
   const size_t n = plan->n, m = n / 2;
-  double *Z = dvi__fourier_transform(plan->half, 1, x, work);
+  double *Z = dvi__fourier_transform(plan->complex, 1, x, work);
   if (Z == x) Z = memcpy(work, x, n * sizeof(double));
   x[0] = Z[0] + Z[1];
   x[n - 1] = Z[0] - Z[1];
@@ -115,7 +104,7 @@ static void analyse_even(const dvi__fft *plan, double *x, double *work)
 void dvi__fft_analyse(const dvi__fft *plan, double *x, double *work)
 {
   const size_t n = plan->n;
-  if (plan->half != NULL) {
+  if (plan->root != NULL) {
     analyse_even(plan, x, work);
     return;
   }
@@ -123,7 +112,7 @@ void dvi__fft_analyse(const dvi__fft *plan, double *x, double *work)
     work[2 * j] = x[j];
     work[2 * j + 1] = 0;
   }
-  const double *sum = dvi__fourier_transform(plan->whole, 1, work, work + 2 * n);
+  const double *sum = dvi__fourier_transform(plan->complex, 1, work, work + 2 * n);
   x[0] = sum[0];
   memcpy(x + 1, sum + 2, (n - 1) * sizeof(double));
 }
@@ -149,21 +138,21 @@ static void synthesise_even(const dvi__fft *plan, double *x, double *work)
   work[1] = x[0] - x[n - 1];
   for (size_t k = 1; k <= m / 2; k++)
     join(plan->root + 2 * k, x + 2 * k - 1, x + n - 2 * k - 1, work + 2 * k, work + n - 2 * k);
-  const size_t own = dvi__fourier_work(plan->half);
-  const double *result = dvi__fourier_transform(plan->half, -1, work, own > n ? work + n : x);
+  const size_t own = dvi__fourier_work(plan->complex);
+  const double *result = dvi__fourier_transform(plan->complex, -1, work, own > n ? work + n : x);
   if (result != x) memcpy(x, result, n * sizeof(double));
 }
 
 void dvi__fft_synthesise(const dvi__fft *plan, double *x, double *work)
 {
   const size_t n = plan->n;
-  if (plan->half != NULL) {
+  if (plan->root != NULL) {
     synthesise_even(plan, x, work);
     return;
   }
   memset(work, 0, 2 * n * sizeof(double));
   work[0] = x[0];
   memcpy(work + 2, x + 1, (n - 1) * sizeof(double));
-  const double *sum = dvi__fourier_transform(plan->whole, -1, work, work + 2 * n);
+  const double *sum = dvi__fourier_transform(plan->complex, -1, work, work + 2 * n);
   for (size_t j = 0; j < n; j++) x[j] = sum[2 * j];
 }

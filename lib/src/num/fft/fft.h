@@ -1,4 +1,4 @@
-/* Discrete Fourier transforms of real and complex sequences of any length.
+/* Discrete Fourier transforms of real sequences of any length.
  *
  * Lengths that are products of 2, 3 and 5 go by Stockham's recursion with the factors 4, 2, 3 and
  * 5, and all other ones by Bluestein's chirp. A plan never changes, and threads may share it.
@@ -19,10 +19,6 @@ void dvi__fft_destroy(dvi__fft **plan);
 
 /* Return the doubles of work that a transform needs. */
 int dvi__fft_work(const dvi__fft *plan);
-
-/* X_k = sum_j x_j exp(sign 2 pi i j k/n) of complex numbers, in place. z has real and imaginary
- * parts in turn [2 n], sign is -1 or 1, and nothing is scaled. */
-void dvi__fft_complex(const dvi__fft *plan, int sign, double *z, double *work);
 
 /* Give the sums c_k of x_j cos(2 pi j k/n) and s_k of x_j sin(2 pi j k/n) of real numbers x [n],
  * for k = 0 .. (n-1)/2, and c of k = n/2 too: [c_0, c_1, s_1, c_2, s_2, ..] [n], in place. An even

@@ -19,6 +19,14 @@ bool dvi__moving_check_probe(dvi_scene *scene, const dvi__local *function, const
   return true;
 }
 
+/* Tell if a function has slopes (order 1) or values (0) among its variables. */
+static bool has_order(const dvi__local *function, int order)
+{
+  for (int k = 0; k < function->variables; k++)
+    if (function->variable[k].order[0] == order) return true;
+  return false;
+}
+
 /* Evaluate at points [count] that are in their cells. */
 static int evaluate(const dvi_scene *scene, const dvi__local *function, double t, const double *q,
                     int64_t count, const double *x, double *f)
@@ -29,8 +37,10 @@ static int evaluate(const dvi_scene *scene, const dvi__local *function, double t
   double *u = dvi__heap_take(2 * values + (size_t)(function->variables * count) + 1, sizeof *u);
   if (u == NULL) return DVI_NO_MEMORY;
   double *const slope = u + values, *const z = slope + values;
-  dvi_status status = dvi_moving_evaluate(moving, t, q, 0, count, x, u);
-  if (status == DVI_OK) status = dvi_moving_evaluate(moving, t, q, 1, count, x, slope);
+  dvi_status status = DVI_OK;
+  if (has_order(function, 0)) status = dvi_moving_evaluate(moving, t, q, 0, count, x, u);
+  if (status == DVI_OK && has_order(function, 1))
+    status = dvi_moving_evaluate(moving, t, q, 1, count, x, slope);
   for (int k = 0; k < function->variables; k++) {
     const dvi_jet *jet = function->variable + k;
     const double *of = (jet->order[0] > 0 ? slope : u) + jet->component * count;

@@ -13,8 +13,8 @@
  * change of the linear forces with the last change of Z. What is left of it is the other forces'.
  *
  * The inverses are kept from step to step as long as h stays, for a composition those of all of its
- * lengths. Coordinates with equal k/m share
- * one, and those with k <= 0 have none. Source: Hairer, Lubich and Wanner 2006, sec. VIII.6. */
+ * lengths. Coordinates with equal k/m share one. Where k/m is not positive, 0 stands for k, whose
+ * inverse is I. Source: Hairer, Lubich and Wanner 2006, sec. VIII.6. */
 #include "step/element/action_struct.h"
 
 #include <math.h>
@@ -26,15 +26,16 @@
 #include "num/simd/lanes.h"
 #include "num/simd/members.h"
 #include "num/simd/wide.h"
+#include "num/simd/width.h"
 #include "step/element/fixed_point.h"
 #include "step/element/members.h"
 #include "system/term/term.h"
 
 struct dvi__preconditioner {
-  int inverses;      /* number of the different k/m > 0 */
-  double *stiffness; /* [n] k */
-  double *ratio;     /* [n] k/m > 0 in ascending order, without repetitions */
-  int *place;        /* [n] place of each coordinate's k/m among these, or -1 */
+  int inverses;      /* number of the different k/m */
+  double *stiffness; /* [n] k, 0 where k/m is not positive */
+  double *ratio;     /* [n] k/m in ascending order, without repetitions */
+  int *place;        /* [n] place of each coordinate's k/m among these */
   double *B;         /* [r*r] by rows */
   double *row_sum;   /* [r] of B */
   /* inverses [inverses*r*lanes] by columns of some h, one after the other; their h, 0 if not made;
@@ -124,18 +125,20 @@ static double ratio_of(const dvi__action *a, int i)
 static void list_ratios(dvi__action *a)
 {
   struct dvi__preconditioner *p = a->preconditioner;
-  size_t count = 0;
-  for (int i = 0; i < a->n; i++)
-    if (ratio_of(a, i) > 0) p->ratio[count++] = ratio_of(a, i);
+  const size_t count = (size_t)a->n;
+  for (size_t i = 0; i < count; i++) {
+    if (!(ratio_of(a, (int)i) > 0)) p->stiffness[i] = 0;
+    p->ratio[i] = ratio_of(a, (int)i);
+  }
   qsort(p->ratio, count, sizeof *p->ratio, compare_ratios);
   for (size_t k = 0; k < count; k++)
     if (p->inverses == 0 || p->ratio[k] != p->ratio[p->inverses - 1])
       p->ratio[p->inverses++] = p->ratio[k];
-  for (int i = 0; i < a->n; i++) {
-    const double ratio = ratio_of(a, i);
+  for (size_t i = 0; i < count; i++) {
+    const double ratio = ratio_of(a, (int)i);
     const double *found = bsearch(&ratio, p->ratio, (size_t)p->inverses, sizeof ratio,
                                   compare_ratios);
-    p->place[i] = found != NULL ? (int)(found - p->ratio) : -1;
+    p->place[i] = (int)(found - p->ratio);
   }
 }
 
@@ -201,7 +204,7 @@ dvi_status dvi__action_prepare_preconditioner(dvi__action *a)
   if (p->stiffness == NULL || p->ratio == NULL || p->place == NULL) return no_memory(a);
   DVI_TRY(find_stiffness(a->system, p->stiffness));
   list_ratios(a);
-  if (p->inverses == 0) {
+  if (!(p->ratio[p->inverses - 1] > 0)) {
     dvi__action_clear_preconditioner(a);
     return DVI_OK;
   }
@@ -303,13 +306,18 @@ void dvi__preconditioner_set_step(dvi__action *a)
 
 /* ---- iterations ---- */
 
-/* Copy rows of r numbers to padded rows. */
-static void pad_rows(const dvi__action *a, int rows, const double *from, double *to)
-{
-  const size_t r = (size_t)a->r, lanes = (size_t)a->fixed_point.lanes;
-  for (size_t i = 0; i < (size_t)rows; i++)
-    memcpy(to + i * lanes, from + i * r, r * sizeof(double));
-}
+/* Loops for one node and for two, which compilers make vectors of, and for any number. */
+#define FOR_FEW_NODES(loop, ...)                        \
+  do {                                                  \
+    const size_t nodes = (size_t)a->r;                  \
+    const size_t length = (size_t)a->fixed_point.lanes; \
+    if (nodes == 1 && length == 1)                      \
+      loop(a, 1, 1, __VA_ARGS__);                       \
+    else if (nodes == 2 && length == 2)                 \
+      loop(a, 2, 2, __VA_ARGS__);                       \
+    else                                                \
+      loop(a, nodes, length, __VA_ARGS__);              \
+  } while (0)
 
 /* Multiply a row of r numbers. Its sums are those of dvi__lanes_product, which is called for
  * longer rows and for many. */
@@ -323,18 +331,11 @@ static inline void multiply_row(const size_t r, size_t lanes, const double *matr
   }
 }
 
-/* Multiply few rows by one matrix. */
-static void multiply_few(const dvi__action *a, int rows, const double *matrix, const double *from,
-                         double *to)
+INLINE void multiply_few_rows(const dvi__action *a, const size_t r, const size_t lanes, int rows,
+                              const double *matrix, const double *from, double *to)
 {
-  const size_t r = (size_t)a->r, lanes = (size_t)a->fixed_point.lanes;
-  for (int i = 0; i < rows; i++, from += r, to += lanes)
-    if (r == 1 && lanes == 1)
-      multiply_row(1, 1, matrix, from, to);
-    else if (r == 2 && lanes == 2)
-      multiply_row(2, 2, matrix, from, to);
-    else
-      multiply_row(r, lanes, matrix, from, to);
+  (void)a;
+  for (int i = 0; i < rows; i++, from += r, to += lanes) multiply_row(r, lanes, matrix, from, to);
 }
 
 /* Multiply `rest` by the inverses. Neighbours that share one are multiplied at once. */
@@ -344,71 +345,87 @@ static void multiply_by_inverses(const dvi__action *a, double *product)
   const struct dvi__preconditioner *p = a->preconditioner;
   const size_t r = (size_t)a->r, lanes = (size_t)a->fixed_point.lanes;
   for (int i = 0, next; i < a->n; i = next) {
-    const double *from = p->rest + (size_t)i * r;
+    const double *from = p->rest + (size_t)i * r,
+                 *inverse = p->in_use + (size_t)p->place[i] * inverse_size(a);
     double *to = product + (size_t)i * lanes;
     for (next = i + 1; next < a->n && p->place[next] == p->place[i];) next++;
-    if (p->place[i] < 0)
-      pad_rows(a, next - i, from, to);
-    else if (a->r <= FEW && next - i <= FEW_ROWS)
-      multiply_few(a, next - i, p->in_use + (size_t)p->place[i] * inverse_size(a), from, to);
+    if (a->r <= FEW && next - i <= FEW_ROWS)
+      FOR_FEW_NODES(multiply_few_rows, next - i, inverse, from, to);
     else
-      dvi__lanes_product(next - i, a->r, a->fixed_point.lanes, a->fixed_point.lanes,
-                         p->in_use + (size_t)p->place[i] * inverse_size(a), from, to);
+      dvi__lanes_product(next - i, a->r, a->fixed_point.lanes, a->fixed_point.lanes, inverse, from,
+                         to);
   }
 }
 
-/* Give Phi from its sums of forces. */
-static double offset_of(const dvi__action *a, size_t i, size_t j, double sum)
+/* Find `rest` from sums of forces, less Z. */
+INLINE void find_rest_of(const dvi__action *a, const size_t r, const size_t lanes,
+                         const double *restrict sums, double *restrict rest)
 {
-  const double c = a->fixed_point.node[j];
-  return a->fixed_point.start[i] * c + (a->fixed_point.factor[i] * sum + a->fixed_point.low[i] * c);
+  const double *start = a->fixed_point.start, *low = a->fixed_point.low,
+               *factor = a->fixed_point.factor, *node = a->fixed_point.node, *Z = a->Z;
+  for (size_t i = 0; i < (size_t)a->n; i++)
+    for (size_t j = 0; j < r; j++)
+      rest[i * r + j] = (start[i] * node[j] +
+                         (factor[i] * sums[i * lanes + j] + low[i] * node[j])) -
+                        Z[i * lanes + j];
 }
 
+WIDE static void find_own_rest(const dvi__action *a, const double *restrict sums,
+                               double *restrict rest)
+{
+  FOR_FEW_NODES(find_rest_of, sums, rest);
+}
+
+/* Z holds the pull of K at q0 in the meantime. */
 void dvi__preconditioner_begin(dvi__action *a)
 {
   const struct dvi__preconditioner *p = a->preconditioner;
   const size_t n = (size_t)a->n, r = (size_t)a->r, lanes = (size_t)a->fixed_point.lanes;
+  memcpy(p->moved, a->Z, n * lanes * sizeof(double));
   for (size_t i = 0; i < n; i++) {
-    const double pull = a->fixed_point.factor[i] * a->h * fmax(p->stiffness[i], 0) * a->q0[i];
-    for (size_t j = 0; j < r; j++)
-      p->rest[i * r + j] = offset_of(a, i, j, a->Z[i * lanes + j]) - pull * p->row_sum[j];
+    const double pull = a->fixed_point.factor[i] * a->h * p->stiffness[i] * a->q0[i];
+    for (size_t j = 0; j < r; j++) a->Z[i * lanes + j] = pull * p->row_sum[j];
   }
+  find_own_rest(a, p->moved, p->rest);
   multiply_by_inverses(a, a->Z);
   for (size_t i = 0; i < n; i++)
     for (size_t j = 0; j < r; j++) a->fixed_point.Q[i * r + j] = a->q0[i] + a->Z[i * lanes + j];
 }
 
 /* Move the nodes, and their linear forces. */
-static void move_nodes(dvi__action *a)
+INLINE void move_nodes_of(const dvi__action *a, const size_t r, const size_t lanes,
+                          const double *restrict moved, double *restrict Z, double *restrict Q,
+                          double *restrict force)
 {
-  const struct dvi__preconditioner *p = a->preconditioner;
-  const size_t r = (size_t)a->r, lanes = (size_t)a->fixed_point.lanes;
-  for (size_t i = 0; i < (size_t)a->n; i++) {
-    const double stiffness = p->place[i] >= 0 ? p->stiffness[i] : 0;
-    const double *moved = p->moved + i * lanes;
-    double *Z = a->Z + i * lanes, *Q = a->fixed_point.Q + i * r, *g = a->fixed_point.force + i * r;
+  const double *stiffness = a->preconditioner->stiffness, *weight = a->fixed_point.weight,
+               *q0 = a->q0;
+  for (size_t i = 0; i < (size_t)a->n; i++)
     for (size_t j = 0; j < r; j++) {
-      Z[j] += moved[j];
-      Q[j] = a->q0[i] + Z[j];
-      g[j] += a->fixed_point.weight[j] * (stiffness * moved[j]);
+      const double next = Z[i * lanes + j] + moved[i * lanes + j];
+      Z[i * lanes + j] = next;
+      Q[i * r + j] = q0[i] + next;
+      force[i * r + j] += weight[j] * (stiffness[i] * moved[i * lanes + j]);
     }
-  }
+}
+
+WIDE static void move_nodes(const dvi__action *a, const double *restrict moved, double *restrict Z,
+                            double *restrict Q, double *restrict force)
+{
+  FOR_FEW_NODES(move_nodes_of, moved, Z, Q, force);
 }
 
 void dvi__preconditioner_iterate(dvi__action *a, double *change, double *largest)
 {
   const struct dvi__preconditioner *p = a->preconditioner;
-  const size_t n = (size_t)a->n, r = (size_t)a->r, lanes = (size_t)a->fixed_point.lanes;
+  const size_t count = (size_t)a->n * (size_t)a->fixed_point.lanes;
   dvi__lanes_weigh(a->n, a->r, a->fixed_point.weight, a->fixed_point.force);
   dvi__lanes_product(a->n, a->r, a->fixed_point.lanes, a->fixed_point.lanes, a->fixed_point.matrix,
                      a->fixed_point.force, p->moved);
-  for (size_t i = 0; i < n; i++)
-    for (size_t j = 0; j < r; j++)
-      p->rest[i * r + j] = offset_of(a, i, j, p->moved[i * lanes + j]) - a->Z[i * lanes + j];
+  find_own_rest(a, p->moved, p->rest);
   multiply_by_inverses(a, p->moved);
-  move_nodes(a);
-  *change = dvi__lanes_largest(n * lanes, p->moved);
-  *largest = dvi__lanes_largest(n * lanes, a->Z);
+  move_nodes(a, p->moved, a->Z, a->fixed_point.Q, a->fixed_point.force);
+  *change = dvi__lanes_largest(count, p->moved);
+  *largest = dvi__lanes_largest(count, a->Z);
   if (isnan(*change) || isnan(*largest)) *change = HUGE_VAL;
 }
 
@@ -417,7 +434,7 @@ void dvi__preconditioner_other_forces(const dvi__action *a, double *g)
   const struct dvi__preconditioner *p = a->preconditioner;
   const size_t r = (size_t)a->r;
   for (size_t i = 0; i < (size_t)a->n; i++)
-    for (size_t j = 0; j < r && p->place[i] >= 0; j++)
+    for (size_t j = 0; j < r; j++)
       g[i * r + j] += a->h * a->weight[j] * (p->stiffness[i] * a->fixed_point.Q[i * r + j]);
 }
 
@@ -450,12 +467,9 @@ static void multiply_members(const dvi__action_members *m, double *product)
   const struct dvi__preconditioner *p = a->preconditioner;
   const size_t row = (size_t)a->r * (size_t)m->width;
   for (size_t i = 0; i < (size_t)a->n; i++)
-    if (p->place[i] < 0)
-      memcpy(product + i * row, m->rest + i * row, row * sizeof(double));
-    else
-      dvi__members_product(1, a->r, a->fixed_point.lanes, a->r,
-                           p->in_use + (size_t)p->place[i] * inverse_size(a), m->width,
-                           m->rest + i * row, product + i * row);
+    dvi__members_product(1, a->r, a->fixed_point.lanes, a->r,
+                         p->in_use + (size_t)p->place[i] * inverse_size(a), m->width,
+                         m->rest + i * row, product + i * row);
 }
 
 /* Z holds the pull of K at q0 in the meantime. */
@@ -466,7 +480,7 @@ void dvi__preconditioner_begin_members(dvi__action_members *m)
   const size_t n = (size_t)a->n, r = (size_t)a->r, width = (size_t)m->width;
   memcpy(m->moved, m->Z, n * r * width * sizeof(double));
   for (size_t i = 0; i < n; i++) {
-    const double strength = a->fixed_point.factor[i] * a->h * fmax(p->stiffness[i], 0);
+    const double strength = a->fixed_point.factor[i] * a->h * p->stiffness[i];
     for (size_t j = 0; j < r; j++)
       for (size_t k = 0; k < width; k++)
         m->Z[members_at(m, i, j) + k] = strength * m->origin[i * width + k] * p->row_sum[j];
@@ -513,8 +527,7 @@ void dvi__preconditioner_iterate_members(dvi__action_members *m)
   memset(m->change, 0, width * sizeof(double));
   memset(m->largest, 0, width * sizeof(double));
   for (size_t i = 0; i < n; i++)
-    for (size_t j = 0; j < r; j++)
-      move_members(m, i, j, p->place[i] >= 0 ? p->stiffness[i] : 0, m->change, m->largest);
+    for (size_t j = 0; j < r; j++) move_members(m, i, j, p->stiffness[i], m->change, m->largest);
 }
 
 void dvi__preconditioner_other_forces_of_members(dvi__action_members *m)
@@ -523,7 +536,7 @@ void dvi__preconditioner_other_forces_of_members(dvi__action_members *m)
   const struct dvi__preconditioner *p = a->preconditioner;
   const size_t r = (size_t)a->r, count = (size_t)m->count;
   for (size_t i = 0; i < (size_t)a->n; i++)
-    for (size_t j = 0; j < r && p->place[i] >= 0; j++)
+    for (size_t j = 0; j < r; j++)
       for (size_t k = 0; k < count; k++) {
         const size_t at = (i * r + j) * count + k;
         m->forces[at] += a->h * a->weight[j] * (p->stiffness[i] * m->kept_Q[at]);
