@@ -9,9 +9,9 @@
 # Usage: clang_tidy.sh TOP BUILD CLANG_TIDY C_COMPILER
 set -u
 
-# tidy TOP BUILD CLANG_TIDY KEY FILE: look at one file, and leave its key if it passes, else print the
-# messages. Each file gets a run of its own, because the analyzer of version 14 carries va_lists over
-# from one file to the next.
+# tidy TOP BUILD CLANG_TIDY KEY FILE: look at one file, and leave its key if it passes, else print
+# the messages. Each file gets a run of its own, because the analyzer of version 14 carries va_lists
+# over from one file to the next.
 tidy() {
   top=$1 build=$2 tool=$3 key=$4 file=$5
   cd "$top" || exit 1
@@ -65,8 +65,8 @@ xargs "$compiler" -MM -MG -I lib/include -I lib/src -I apps -I apps/problems <"$
   exit 1
 }
 
-# $work/changed lists the files that changed since all sources last passed. It does not exist without
-# history.
+# $work/changed lists the files that changed since all sources last passed. It does not exist
+# without history.
 base=$(cat tests/lint/analyzed)
 git merge-base --is-ancestor "$base" HEAD 2>/dev/null || base=
 case ${DVI_ANALYZE:-} in
