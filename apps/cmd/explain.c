@@ -128,8 +128,11 @@ static int explain_march(const problem *scene, const char *method, double h)
   (void)printf("march: %s with ", method);
   if (facts.longest > facts.step)
     (void)printf("steps from %g to %g, each below its own bound\n", facts.step, facts.longest);
-  else
+  else if (facts.step <= facts.bound)
     (void)printf("steps of %g, below the bound %g\n", facts.step, facts.bound);
+  else
+    (void)printf("steps of %g, beyond the bound %.3g of the start's density: noise may grow\n",
+                 facts.step, facts.bound);
   scene_tell(scene);
   dvi_march_destroy(&march);
   return DONE;

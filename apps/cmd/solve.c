@@ -173,13 +173,18 @@ static int tell_state(const solve_request *r, const problem *scene, const dvi_de
 /* ---- ground states ---- */
 
 /* Print the norm and mu, and what is watched of the state, the energy first. */
-static dvi_status tell_ground(const solve_request *r, const problem *scene, double mu,
-                              const double *U)
+static dvi_status tell_ground(const solve_request *r, const problem *scene,
+                              const dvi_schroedinger_ground_report *state, const double *U)
 {
   FILE *stream = r->csv != NULL && strcmp(r->csv, "-") == 0 ? stderr : stdout;
   (void)fprintf(stream, "Ground state of %s\n", scene->name);
   (void)fprintf(stream, "%-10s %.12g\n", "norm", dvi_scene_ground_norm(scene->scene));
-  (void)fprintf(stream, "%-10s %.12g\n", "mu", mu);
+  (void)fprintf(stream, "%-10s %.12g\n", "mu", state->mu);
+  if (state->followed < 1)
+    (void)fprintf(stream,
+                  "%-10s of less energy than the state followed from no interaction, which is a "
+                  "saddle beyond %.3g of it\n",
+                  "branch", state->followed);
   const dvi_status status = print_watched(stream, scene, density_of(scene), U);
   return status == DVI_OK ? print_ranges(stream, scene, density_of(scene), U) : status;
 }
@@ -188,11 +193,11 @@ static dvi_status tell_ground(const solve_request *r, const problem *scene, doub
 static int solve_ground(const solve_request *r, const problem *scene, double *U)
 {
   const dvi_schroedinger *equation = dvi_scene_schroedinger(scene->scene);
-  double mu = 0;
+  dvi_schroedinger_ground_report state;
   if (equation == NULL) return library_error(DVI_UNSUPPORTED);
-  dvi_status status = dvi_schroedinger_ground(equation, dvi_scene_ground_norm(scene->scene), &mu,
-                                              NULL, U);
-  if (status == DVI_OK) status = tell_ground(r, scene, mu, U);
+  dvi_status status = dvi_schroedinger_ground(equation, dvi_scene_ground_norm(scene->scene), &state,
+                                              U);
+  if (status == DVI_OK) status = tell_ground(r, scene, &state, U);
   return status == DVI_OK ? DONE : library_error(status);
 }
 

@@ -61,11 +61,11 @@ static dvi_status condense(const dvi_space *line)
 {
   const dvi_schroedinger_terms terms = {
       .size = sizeof terms, .space = line, .potential = trap, .interaction = 10};
-  double mu, energy;
+  dvi_schroedinger_ground_report state;
   dvi_schroedinger *gas = NULL;
   dvi_status status = dvi_schroedinger_create(&terms, &gas);
-  if (!status) status = dvi_schroedinger_ground(gas, 1, &mu, &energy, NULL);
-  if (!status) printf("condensate: mu = %.10f, E = %.10f\n", mu, energy);
+  if (!status) status = dvi_schroedinger_ground(gas, 1, &state, NULL);
+  if (!status) printf("condensate: mu = %.10f, E = %.10f\n", state.mu, state.energy);
   dvi_schroedinger_destroy(&gas);
   return status;
 }

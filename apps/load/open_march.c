@@ -161,6 +161,6 @@ int check_studied_march(const char *command, const problem *scene, const char *m
   if (code != DONE || dvi_scene_march_order(scene->scene, method) > 0) return code;
   return usage_error("%s: short steps of %s do not tend to the motion of the space's own mass, to "
                      "which they are compared; take space=exact with fem:degree=1, or "
-                     "space=trapezoid with lumped=yes",
+                     "space=trapezoid with lumped=yes, and a start without t",
                      command, method);
 }

@@ -34,8 +34,8 @@ typedef struct journey {
   whole_file out;
   progress_line progress;
   double unit, t_start;
-  long unit_count; /* units from t = 0 */
-  bool row_written;
+  long unit_count;          /* units from t = 0 */
+  bool row_written, beyond; /* a bound, which was told */
   const volatile sig_atomic_t *caught;
 } journey;
 
@@ -88,6 +88,19 @@ static void tell_if_on_mesh(const problem *scene, const char *method, const char
              "middles: a start by A and probes of parts need the mesh");
 }
 
+/* Warn of steps beyond a bound, at the start or at the end, where another density may stand. */
+static void warn_of_bound(journey *j)
+{
+  dvi_march_facts facts;
+  dvi_march_facts_of(j->march, &facts);
+  if (facts.step <= facts.bound || j->beyond) return;
+  j->beyond = true;
+  complain(
+      "run: steps of %.3g are beyond the bound %.3g of the density at t = %.6g; noise may grow "
+      "by resonance, and the energy with it: take steps below it, midpoint or gauss",
+      facts.step, facts.bound, dvi_march_time(j->march));
+}
+
 static int make_march(journey *j)
 {
   const run_request *r = j->request;
@@ -111,6 +124,7 @@ static int make_march(journey *j)
   j->unit = facts.longest;
   j->t_start = dvi_march_time(j->march);
   j->unit_count = (long)floor(j->t_start / j->unit + 1e-6);
+  warn_of_bound(j);
   return DONE;
 }
 
@@ -227,6 +241,7 @@ static int travel(journey *j)
   if (saved != DVI_OK) good = library_error(saved) == DONE;
   if (!good) return FAILED;
   tell_events(j);
+  warn_of_bound(j);
   return *j->caught == 0 ? DONE : run_interrupted(r, (int)*j->caught, dvi_march_time(j->march));
 }
 

@@ -28,6 +28,9 @@ expect 0 'orders' order sine.yaml --t-end 1
 says out 'claimed order 2, fitted 2.00 .*: ok' 'the order'
 expect 2 'another mass' order sine.yaml --method multisymplectic
 says err 'take space=exact with fem:degree=1' 'which weight has the mass of the space'
+sed "s/^initial.*/initial: {u: 1.5 + 0.5*cos(x - t)}/" sine.yaml >motion.yaml
+expect 2 'a start that moves' order motion.yaml
+says err 'and a start without t' 'whose first step is not that of the space'
 expect 0 'an explanation' explain sine.yaml
 says out 'with steps of 0.1' 'the steps'
 expect 1 'a long step' run sine.yaml --method multisymplectic --h 5
@@ -41,6 +44,7 @@ refused sine.yaml bent "s/fem:degree=1/spline:degree=3/;s/d(u,x)^2/d(u,x,x)^2/" 
 refused sine.yaml first "s/scalar/complex/;s/u'^2.*/u[1]'*u[2] - dot(d(u,x),d(u,x))\/2/;/^initial/d
   /^probes/d" 'one-form' 4:10
 refused sine.yaml word 's/exact/half/' '"space=half" is no option' 8:9
+refused sine.yaml axes 's/exact/exact:0/' 'weights of 2 axes, and the field has 1' 8:9
 refused sine.yaml mesh \
   's/^domain.*/mesh: {generator: disk, cells: 4}/;s/,cells=21//;/boundary/d;/probes/d' \
   'a mesh has none' 1:7

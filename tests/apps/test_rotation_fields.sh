@@ -92,7 +92,21 @@ refused rod.yaml key "s/^initial.*/initial: {R': 0}/" "is 'R' and 'omega(R)'" 7:
 refused rod.yaml fine 's/degree=1/degree=2/' 'has equal cells' 3:8
 refused rod.yaml turned 's/^boundary.*/boundary: {left: {robin: 1}}/' \
   'are free, or fixed where the start' 6:11
-refused rod.yaml seen 's/^step/probes: {a: R}\n&/' 'have no probes' 9:9
+# probes are what the columns of their node have
+cat ring.yaml - >probes.yaml <<END
+probes: {tilt: {of: "R[3,2] + x + 0*t", at: pi/4}, spin: {of: "omega(R)[1]", at: 0}}
+END
+expect 0 'probes' run probes.yaml --columns tilt,spin,R_3_32,omega_R_1_x --final
+awk -F, 'END { d = $2 - $4 - atan2(1, 1); e = $3 - $5
+  exit !(d < 1e-14 && d > -1e-14 && e < 1e-14 && e > -1e-14) }' out || fail 'probes at nodes'
+refused rod.yaml seen 's/^step/probes: {a: R}\n&/' 'a probe is a field at a point' 9:13
+refused rod.yaml whole 's/^step/probes: {a: R(0.5)}\n&/' 'where a number is needed' 9:13
+refused rod.yaml sum 's/^step/probes: {a: {integral: "R[1,1]"}}\n&/' 'no integrals' 9:10
+refused rod.yaml between 's/^step/probes: {a: {of: "R[1,1]", at: 0.26}}\n&/' \
+  'the nearest one that moves is at x = 0.3' 9:10
+refused rod.yaml held 's/^step/probes: {a: {of: "R[1,1]", at: 0}}\n&/' 'is at x = 0.1' 9:10
+refused rod.yaml curvature 's/^step/probes: {a: {of: "kappa(R,x)[1]", at: 0.5}}\n&/' \
+  'has the entries of R and omega(R)' 9:10
 refused rod.yaml word 's/rotation/spinor/' 'scalar, complex, vector(d) or rotation' 4:13
 refused rod.yaml bent 's/kappa(R,x), kappa(R,x)/kappa(R), kappa(R)/' 'as in kappa(R,x)' 5:44
 

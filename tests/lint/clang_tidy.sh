@@ -1,19 +1,19 @@
 #!/bin/sh
 # Runs clang-tidy over the library, the command, the problems and the examples, with the checks of
-# .clang-tidy. Its static analyzer takes nearly all of the time. It looks at a source if the source,
-# a header of ours that it includes or the checks have changed since the commit that the file
-# `analyzed` beside this script names, and if they have not passed in this build folder since. With
-# DVI_ANALYZE=all it looks at every source and, if all pass, writes the commit into that file, to be
-# committed (`sh cmake/bootstrap.sh long` does that). Without history, or without that commit in it,
-# the analyzer looks at every source, too.
+# .clang-tidy. It looks at a source if the source, a header of ours that it includes or the checks
+# have changed since the commit that the file `analyzed` beside this script names, and if they have
+# not passed in this build folder since. Without history, or without that commit in it, it looks at
+# every source. With DVI_ANALYZE=record it writes the commit into that file if all sources pass and
+# none differs from the commit, for then all sources have passed; to be committed. DVI_ANALYZE=all
+# does the same, and looks at every source (`sh cmake/bootstrap.sh long` does that).
 # Usage: clang_tidy.sh TOP BUILD CLANG_TIDY C_COMPILER
 set -u
 
-# tidy TOP BUILD CLANG_TIDY CHECKS FILE: look at one file, and print the messages if it fails. Each
-# file gets a run of its own, because the analyzer of version 14 carries va_lists over from one file
-# to the next.
+# tidy TOP BUILD CLANG_TIDY KEY FILE: look at one file, and leave its key if it passes, else print
+# the messages. Each file gets a run of its own, because the analyzer of version 14 carries va_lists
+# over from one file to the next.
 tidy() {
-  top=$1 build=$2 tool=$3 checks=$4 file=$5
+  top=$1 build=$2 tool=$3 key=$4 file=$5
   cd "$top" || exit 1
   header=
   case $file in
@@ -25,15 +25,13 @@ tidy() {
   [ -z "$header" ] ||
     set -- "$@" --extra-arg=-include --extra-arg="$top/tests/lint/$header" \
       --extra-arg=-Wno-unused-value
-  set -- -p "$build" --quiet --warnings-as-errors='*' --checks="$checks" "$@" "$file"
-  said=$("$tool" "$@" 2>&1) && return
+  set -- -p "$build" --quiet --warnings-as-errors='*' "$@" "$file"
+  if said=$("$tool" "$@" 2>&1); then
+    touch "$build/analyzed/$key"
+    return
+  fi
   printf '%s\n' "$said" | grep -v ' warnings\? .*generated\.$\|^Suppressed \|^Use -header-filter'
   return 1
-}
-
-# analyze TOP BUILD CLANG_TIDY KEY FILE: analyse a file, and leave its key if it passes.
-analyze() {
-  tidy "$1" "$2" "$3" '' "$5" && touch "$2/analyzed/$4"
 }
 
 if [ "$1" = --one ]; then shift; "$@"; exit $?; fi
@@ -48,8 +46,6 @@ rc=0
 
 find lib/src apps -name '*.c' | LC_ALL=C sort >"$work/sources"
 [ -s "$work/sources" ] || { echo "no sources"; exit 1; }
-xargs -n 1 -P "$cores" sh "$0" --one tidy "$top" "$build" "$tool" '-clang-analyzer-*' \
-  <"$work/sources" || rc=1
 
 # Each line of $work/parts names a source and its headers.
 xargs "$compiler" -MM -MG -I lib/include -I lib/src -I apps -I apps/problems <"$work/sources" \
@@ -69,8 +65,8 @@ xargs "$compiler" -MM -MG -I lib/include -I lib/src -I apps -I apps/problems <"$
   exit 1
 }
 
-# $work/changed lists the files that changed since the analyzer last passed on all. It does not
-# exist without history.
+# $work/changed lists the files that changed since all sources last passed. It does not exist
+# without history.
 base=$(cat tests/lint/analyzed)
 git merge-base --is-ancestor "$base" HEAD 2>/dev/null || base=
 case ${DVI_ANALYZE:-} in
@@ -99,12 +95,16 @@ while read -r parts; do
   echo "$key ${parts%% *}"
 done <"$work/parts" >"$work/todo"
 
-echo "the analyzer looks at $(wc -l <"$work/todo") of $(wc -l <"$work/sources") sources"
+echo "clang-tidy looks at $(wc -l <"$work/todo") of $(wc -l <"$work/sources") sources"
 if [ -s "$work/todo" ]; then
-  xargs -n 2 -P "$cores" sh "$0" --one analyze "$top" "$build" "$tool" <"$work/todo" || rc=1
+  xargs -n 2 -P "$cores" sh "$0" --one tidy "$top" "$build" "$tool" <"$work/todo" || rc=1
 fi
-if [ "${DVI_ANALYZE:-}" = all ] && [ $rc -eq 0 ] && git diff --quiet HEAD -- lib apps; then
-  git rev-parse HEAD >tests/lint/analyzed
-  echo "tests/lint/analyzed names this commit now; please commit it"
-fi
+case ${DVI_ANALYZE:-} in
+  all | record)
+    if [ $rc -eq 0 ] && git diff --quiet HEAD -- lib apps .clang-tidy tests/lint; then
+      git rev-parse HEAD >tests/lint/analyzed
+      echo "tests/lint/analyzed names this commit now; please commit it"
+    fi
+    ;;
+esac
 exit $rc

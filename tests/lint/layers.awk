@@ -60,7 +60,7 @@ BEGIN {
   sees["field/multiscale"] = "core num field/algebra"
   sees["field/space"] = "core num num/fft space field/algebra field/mesh field/multiscale"
   sees["field/density"] = "core num field/algebra field/mesh field/space"
-  sees["field/schroedinger"] = "core num march field/algebra field/space field/density"
+  sees["field/schroedinger"] = "core num solve march field/algebra field/space field/density"
   sees["field/multisymplectic"] = "core num march field/algebra"
   sees["field/moving"] = "core num field/mesh field/space"
   sees["field/rotations"] = "core field/algebra"

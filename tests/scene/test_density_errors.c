@@ -146,7 +146,7 @@ END_TEST
 START_TEST(starts_and_probes_are_of_fields)
 {
   section_refused("initial: {w: 1}", 11, "no 'w'; it has u");
-  section_refused("initial: {u: t}", 14, "the time cannot stand in a start");
+  section_refused("initial: {u': t}", 15, "the time cannot stand in a start");
   section_refused("initial: {u: u}", 14, "a start is a function of position");
   section_refused("initial: {u: [1, 2]}", 14, "a vector of 2 here, where a number is needed");
   check_refused(LINE WAVE "initial: {u: 1/x}\n", DVI_NOT_FINITE,

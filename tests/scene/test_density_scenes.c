@@ -304,6 +304,42 @@ START_TEST(the_short_form_is_a_density)
 }
 END_TEST
 
+/* A soliton of Korteweg and de Vries' equation u' = D grad H, with the central difference D and H
+ * = sum h ((u_{i+1} - u_i)^2/(2 h^2) - u_i^3), by the midpoint rule. w is u at every second
+ * point, and differences of phi are u between them. The error is that of a program in numpy, in
+ * L2. */
+START_TEST(central_differences_move_a_soliton_with_their_error)
+{
+  double first[8], last[8];
+  const double *q, *v, *p;
+  run_scene("parameters: {N: 200, L: 20, c: 4, place: 8, h: L/N, K: N/2}\n"
+            "coordinates: {'phi[K]': scalar, 'w[K]': scalar}\n"
+            "definitions: {m: 'sum(j=1..K, c/2/cosh(sqrt(c)/2*((2*j - 1)*h - place))^2)/K'}\n"
+            "one_form: {'phi[i]': 'h*w[i]'}\n"
+            "hamiltonian: 'sum(j=1..K, h*(((m + (phi[if(j < K, j + 1, 1)] - phi[j])/(2*h) - "
+            "w[j])/h)^2/2 + ((w[if(j < K, j + 1, 1)] - m - (phi[if(j < K, j + 1, 1)] - "
+            "phi[j])/(2*h))/h)^2/2 - w[j]^3 - (m + (phi[if(j < K, j + 1, 1)] - "
+            "phi[j])/(2*h))^3))'\n"
+            "initial:\n"
+            "  phi[i]: '2*h*(sum(j=1..K, if(j < i, c/2/cosh(sqrt(c)/2*((2*j - 1)*h - place))^2, "
+            "0)) - (i - 1)*m)'\n"
+            "  w[i]: c/2/cosh(sqrt(c)/2*((2*i - 2)*h - place))^2\n"
+            "invariants:\n"
+            "  mass: 'h*sum(j=1..K, w[j] + m + (phi[if(j < K, j + 1, 1)] - phi[j])/(2*h))'\n"
+            "  error: 'sum(j=1..K, h*(w[j] - c/2/cosh(sqrt(c)/2*((2*j - 2)*h - place - c*t))^2)^2 "
+            "+ h*(m + (phi[if(j < K, j + 1, 1)] - phi[j])/(2*h) - c/2/cosh(sqrt(c)/2*((2*j - 1)*h "
+            "- place - c*t))^2)^2)'\n"
+            "method: vprk:nodes=1\nstep: 0.01\nuntil: 0.5\n",
+            last);
+  dvi_scene_start(scene, &q, &v, &p);
+  ck_assert_int_eq(dvi_system_invariants(dvi_scene_system(scene), 0, q, p, first), DVI_OK);
+  const int mass = watched("mass"), error = watched("error");
+  requires_near(first[error], 0, 1e-25);
+  requires_near(sqrt(last[error]), 8.647e-3, 5e-7);
+  requires_near(last[mass], first[mass], 4e-15); /* some roundings of a sum of about 4 */
+}
+END_TEST
+
 /* The lowest energies of the oscillator are hbar sqrt(k/m) (n + 1/2), here with sqrt(k/m) = 1/2. */
 START_TEST(the_short_form_is_an_equation)
 {
@@ -521,6 +557,7 @@ SUITE(density_scenes)
   tcase_add_test(tests, ends_that_move_carry_a_wave);
   tcase_add_test(tests, the_short_form_moves_plane_waves);
   tcase_add_test(tests, the_short_form_is_a_density);
+  tcase_add_test(tests, central_differences_move_a_soliton_with_their_error);
   tcase_add_test(tests, the_short_form_is_an_equation);
   tcase_add_test(tests, probes_are_values_derivatives_and_integrals);
   tcase_add_test(tests, unknowns_have_the_names_of_their_fields);

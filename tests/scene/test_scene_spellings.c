@@ -100,6 +100,18 @@ START_TEST(sums_inside_of_something_are_their_terms)
 }
 END_TEST
 
+/* The index of a definition's own sum is another one than that around its use. */
+START_TEST(definitions_do_not_see_the_indices_around_them)
+{
+  same_with("definitions: {all: 'sum(i=1..n, z[i])'}\n", "sum(i=1..n, (u[i] + all - m[i]*z[i])^2)",
+            "sum(i=1..n, (u[i] + z[1] + z[2] + z[3] - m[i]*z[i])^2)");
+  same_with("definitions: {all: 'sum(k=1..n, z[k])', more: 'sum(i=1..n, all*i*z[i])'}\n",
+            "sum(i=1..n, sum(k=1..n, sin(more*u[k])*z[i]))",
+            "(z[1] + z[2] + z[3])*sum(k=1..n, "
+            "sin((z[1] + z[2] + z[3])*(z[1] + 2*z[2] + 3*z[3])*u[k]))");
+}
+END_TEST
+
 START_TEST(factors_of_sums_are_kept)
 {
   check_same_scene("-2*sum(i, z[i]^2)/4", "-(z[1]^2 + z[2]^2 + z[3]^2)/2");
@@ -152,6 +164,7 @@ SUITE(scene_spellings)
   tcase_add_checked_fixture(tests, NULL, release);
   tcase_add_test(tests, sums_are_their_terms);
   tcase_add_test(tests, sums_inside_of_something_are_their_terms);
+  tcase_add_test(tests, definitions_do_not_see_the_indices_around_them);
   tcase_add_test(tests, factors_of_sums_are_kept);
   tcase_add_test(tests, vectors_and_matrices_are_their_numbers);
   tcase_add_test(tests, rates_follow_the_chain_rule);

@@ -171,8 +171,9 @@ dvi_status dvi_field_fastest(const dvi_field *field, double *omega);
  *  It has the mass M_0, the potential "elastic" u.K u/2 - (W f + b).u with the fixed values in u,
  *  quadratic, with its largest frequency and marked as fast, and the potential "density", the sum
  *  of w V over the unknowns. On a mesh with equal surroundings of all vertices, a linear wave has
- *  the symmetries "momentum_x" and so on, of translations along the axes that repeat themselves.
- *  With the spectral star it has none.
+ *  the symmetries "momentum_x" and so on, of translations along the axes that repeat themselves,
+ *  -p.D u with the central difference D. It is positive for waves that run along the axis, as the
+ *  momentum of a density is. With the spectral star it has none.
  *
  *  @param[out] system  owned by the caller, for dvi_system_destroy before the field's end
  *  @retval (others)    as dvi_system_create and dvi_field_fastest */

@@ -32,6 +32,8 @@ typedef struct dvi_multisymplectic_weights {
   /** not 0 to take potentials (DVI_DENSITY_POTENTIAL) at the levels, by the trapezoidal rule in
    *  time, so that their forces are known before a step, and the matrix of the steps is constant */
   int levels;
+  /** number of axes that the weights are of, which must be that of the lattice. 0 for any */
+  int axes;
 } dvi_multisymplectic_weights;
 
 /** A symmetry of the density: l does not change if u moves along xi(u). */
@@ -138,7 +140,8 @@ dvi_status dvi_multisymplectic_laws(const dvi_multisymplectic_terms *terms,
 
 /** Read a method with its weights: "multisymplectic", "multisymplectic:space=1/6,time=midpoint".
  *  `space`, of all axes, and `time` are numbers, fractions or the words trapezoid (0, the default),
- *  midpoint (1/4), exact (1/6) and fourth (1/12). potential=levels takes potentials at the levels.
+ *  midpoint (1/4), exact (1/6) and fourth (1/12). "space=1/6:0" has a weight for each axis, in
+ *  their order. potential=levels takes potentials at the levels.
  *
  *  @param[out] weights  unchanged on failure
  *  @retval DVI_BAD_OPTION    it is another method, or has another option or value

@@ -32,7 +32,7 @@ typedef struct dvi_schroedinger dvi_schroedinger;
 typedef struct dvi_schroedinger_terms {
   size_t size;            /**< sizeof(dvi_schroedinger_terms) */
   const dvi_space *space; /**< shared. Required */
-  double hbar, mass;      /**< above 0. Default: 1 */
+  double hbar, mass;      /**< above 0, with hbar^2/(2 mass) from 1e-200 to 1e200. Default: 1 */
   /** The potential V [count] at points x [dimension*count] axis by axis, finite and up to 1e100.
    *  Returns 0, or another number for a failure. Default: 0 */
   int (*potential)(int64_t count, double t, const double *x, double *V, void *user);
@@ -63,6 +63,15 @@ typedef struct dvi_schroedinger_values {
   double momentum[DVI_AXES_MAX]; /**< integral of hbar Im(psi* grad psi). The total current is this,
                                       divided by the mass */
 } dvi_schroedinger_values;
+
+/** What is found of a ground state. */
+typedef struct dvi_schroedinger_ground_report {
+  double mu;     /**< the chemical potential */
+  double energy; /**< as of dvi_schroedinger_values */
+  /** 1 if it is the state that is followed from no interaction. Else the part of the interaction,
+   *  to a thousandth, beyond which that one is a saddle, and this one has less energy */
+  double followed;
+} dvi_schroedinger_ground_report;
 
 /** Options of a march. Zero means the default. */
 typedef struct dvi_schroedinger_march_options {
@@ -117,9 +126,12 @@ const char *dvi_schroedinger_method_name(int i);
 
 /** Create a march (dvi/march.h). Its form A is psi [2*functions], and it has no other forms.
  *
- *  Its bound (dvi_march_facts) is infinite, but for split with an interaction on fourier. Steps
- *  above pi hbar over the largest kinetic energy T let resonances of modes grow there. The bound is
- *  that of a weak wave: beside repulsion it is pi hbar/(T + beta |psi|^2) with the wave's density.
+ *  Its bound (dvi_march_facts) is infinite, but for split with an interaction. Beyond it, small
+ *  amplitudes beside a wave of the present largest beta |psi|^2 = B are in resonance with it, and
+ *  grow. With the largest kinetic energy T of the space it is the h of
+ *  T h/hbar + 2 atan(B h/hbar) = pi on fourier, and hbar sqrt(2/(T B)) by Cayley's transform. B
+ *  counts as 0 where beta < 0. A march beyond the bound goes on all the same, because it is that of
+ *  one wave everywhere.
  *
  *  It makes whole steps. Between two of them it shows a shorter step from the earlier one, beside
  *  the state. A start leaves out what it has of fixed functions. Observables are the members of
@@ -132,8 +144,8 @@ const char *dvi_schroedinger_method_name(int i);
  *  @retval DVI_NO_MEMORY     there is no memory
  *  @retval (others)          as the potential fails
  *
- *  dvi_march_advance returns DVI_NOT_CONVERGED if the iteration of a step does not converge, which
- *  stands then at the step before. A shorter step does. */
+ *  dvi_march_advance returns DVI_NOT_CONVERGED if neither the iteration of a step nor Newton's
+ *  method converges. The march stands then at the step before. A shorter step does. */
 dvi_status dvi_schroedinger_march(const dvi_schroedinger *equation,
                                   const dvi_schroedinger_march_options *options, dvi_march **march);
 
@@ -157,20 +169,23 @@ dvi_status dvi_schroedinger_modes(const dvi_schroedinger *equation, int count, d
 
 /** Compute the ground state of a norm, H(psi) psi = mu M psi, at the time 0. psi is real.
  *
- *  Newton's method for (psi, mu) follows the lowest mode from no interaction to all of it.
+ *  Newton's method for (psi, mu) follows the lowest mode from no interaction to all of it. Where
+ *  attraction makes this state a saddle of E, as that in both sides of a double well, a descent
+ *  leads to a state of less energy. It is a minimum, but in a potential with several wells another
+ *  one may be lower still. In three dimensions attraction leaves metastable states alone.
  *
  *  @param      norm    above 0
- *  @param[out] mu      the chemical potential. May be NULL
- *  @param[out] energy  as of dvi_schroedinger_values. May be NULL
+ *  @param[out] report  may be NULL
  *  @param[out] psi     [functions]. May be NULL
  *  @retval DVI_BAD_ARGUMENT   an argument is missing, or the norm is not above 0 and finite
- *  @retval DVI_NOT_CONVERGED  there is no such state on the way: attraction may make it collapse,
- *                             or another state have less energy than the one that is followed
+ *  @retval DVI_NOT_CONVERGED  no such state is found. Attraction may let it collapse, as it does in
+ *                             two dimensions from |beta| norm mass/hbar^2 = 5.850 on, or leave its
+ *                             place open
  *  @retval (others)           as dvi_schroedinger_modes
  *
- *  Sources: Bao and Cai 2013, sec. 3; docs/fields/schroedinger.md. */
-dvi_status dvi_schroedinger_ground(const dvi_schroedinger *equation, double norm, double *mu,
-                                   double *energy, double *psi);
+ *  Sources: Bao and Cai 2013, sec. 3; Weinstein 1983; docs/fields/schroedinger.md. */
+dvi_status dvi_schroedinger_ground(const dvi_schroedinger *equation, double norm,
+                                   dvi_schroedinger_ground_report *report, double *psi);
 
 /** Write what was built, one fact a line. Cut off at size. */
 void dvi_schroedinger_explain(const dvi_schroedinger *equation, char *text, size_t size);

@@ -3,6 +3,7 @@
  * not visit parts that do not depend on the inputs. */
 #include <stdlib.h>
 
+#include "expr/graph_decay.h"
 #include "expr/graph_make.h"
 #include "text/heap.h"
 
@@ -174,6 +175,14 @@ static void pull_back(dvi__graph *graph, const char *part, dvi__node *adjoint, d
 {
   const dvi__graph_node node = graph->node[n];
   const int operands = dvi__operands(node.op);
+  dvi__decay decay;
+  if (dvi__decays(graph, n, &decay)) {
+    if (is_quotient(graph, n))
+      give_share(graph, part, adjoint, node.a, dvi__divide(graph, adjoint[n], node.b));
+    give_share(graph, part, adjoint, decay.inner,
+               dvi__multiply(graph, dvi__multiply(graph, adjoint[n], n), decay.slope));
+    return;
+  }
   if (is_quotient(graph, n)) {
     const dvi__node share = dvi__divide(graph, adjoint[n], node.b);
     give_share(graph, part, adjoint, node.a, share);
@@ -234,6 +243,15 @@ static dvi__node push_forward(dvi__graph *graph, const dvi__node *tangent, dvi__
   const int operands = dvi__operands(node.op);
   const dvi__node zero = dvi__constant(graph, 0);
   const dvi__node a = derivative_is_zero(graph, tangent[node.a]) ? zero : tangent[node.a];
+  dvi__decay decay;
+  if (dvi__decays(graph, n, &decay)) {
+    const dvi__node first = is_quotient(graph, n) ? dvi__divide(graph, a, node.b) : zero;
+    return derivative_is_zero(graph, tangent[decay.inner])
+               ? first
+               : dvi__add(graph, first,
+                          dvi__multiply(graph, dvi__multiply(graph, n, decay.slope),
+                                        tangent[decay.inner]));
+  }
   if (operands == 1) return dvi__multiply(graph, slope_of_unary(graph, n), a);
   const dvi__node b = derivative_is_zero(graph, tangent[node.b]) ? zero : tangent[node.b];
   if (is_quotient(graph, n))

@@ -352,6 +352,27 @@ START_TEST(momentum_is_conserved_on_grids_that_repeat_themselves)
 }
 END_TEST
 
+/* u = sin(2 pi (x - t)) has the momentum -int u' D u with the central difference, whose factor is
+ * sin(2 pi h)/h. */
+START_TEST(momentum_is_positive_for_waves_along_the_axis)
+{
+  enum { CELLS = 32 };
+  double q[CELLS], p[CELLS], momentum;
+  dvi_integrator *integrator = NULL;
+  wave w = make_wave(generated("interval", 1, CELLS, 1), DVI_CIRCUMCENTRIC, 0, NULL);
+  for (int i = 0; i < CELLS; i++) {
+    q[i] = sin(2 * pi * i / CELLS);
+    p[i] = -2 * pi * cos(2 * pi * i / CELLS) / CELLS;
+  }
+  ck_assert_int_eq(dvi_integrator_create(w.system, "verlet", &integrator), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_start(integrator, 0, q, p), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_invariant(integrator, 1, &momentum), DVI_OK);
+  ck_assert_double_eq_tol(momentum, pi * CELLS * sin(2 * pi / CELLS), 1e-13);
+  dvi_integrator_destroy(&integrator);
+  end_wave(&w);
+}
+END_TEST
+
 START_TEST(fields_that_are_not_alike_everywhere_have_no_momentum)
 {
   wave drum = make_wave(staggered_mesh(4, 4), DVI_CIRCUMCENTRIC, 0, NULL);
@@ -475,6 +496,7 @@ SUITE(waves)
   tcase_add_test(tests, unstable_steps_are_refused_by_their_bound);
   tcase_add_test(tests, frequency_of_a_term_is_checked);
   tcase_add_test(tests, momentum_is_conserved_on_grids_that_repeat_themselves);
+  tcase_add_test(tests, momentum_is_positive_for_waves_along_the_axis);
   tcase_add_test(tests, fields_that_are_not_alike_everywhere_have_no_momentum);
   tcase_add_test(tests, energy_stays_bounded);
   tcase_add_test(tests, ida_judges_waves_of_pendula);

@@ -170,14 +170,27 @@ START_TEST(methods_are_read_with_their_weights)
       dvi_multisymplectic_parse("multisymplectic:time=fourth,potential=levels,space=.2", &w),
       DVI_OK);
   ck_assert(w.space[1] == .2 && w.time == 1. / 12 && w.levels == 1);
-  static const char *const bad[] = {"multisymplectic:space=1/3", "multisymplectic:space=1/",
-                                    "multisymplectic:space=-.1", "multisymplectic:time=nan",
-                                    "multisymplectic:time=",     "multisymplectic:time=1/0",
-                                    "multisymplectic:time=1/4x", "multisymplectic:mass=1",
-                                    "multisymplectic2",          "verlet"};
+  ck_assert_int_eq(dvi_multisymplectic_parse("multisymplectic:space=1/6:fourth,time=0", &w),
+                   DVI_OK);
+  ck_assert(w.space[0] == 1. / 6 && w.space[1] == 1. / 12 && w.axes == 2);
+  ck_assert_int_eq(dvi_multisymplectic_parse("multisymplectic:space=0:.1:.2", &w), DVI_OK);
+  ck_assert(w.space[0] == 0 && w.space[1] == .1 && w.space[2] == .2 && w.axes == 3);
+  static const char *const bad[] = {"multisymplectic:space=0:0:0:0",
+                                    "multisymplectic:space=0:",
+                                    "multisymplectic:time=0:0",
+                                    "multisymplectic:space=1/3",
+                                    "multisymplectic:space=1/",
+                                    "multisymplectic:space=-.1",
+                                    "multisymplectic:time=nan",
+                                    "multisymplectic:time=",
+                                    "multisymplectic:time=1/0",
+                                    "multisymplectic:time=1/4x",
+                                    "multisymplectic:mass=1",
+                                    "multisymplectic2",
+                                    "verlet"};
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
     ck_assert_int_eq(dvi_multisymplectic_parse(bad[i], &w), DVI_BAD_OPTION);
-  ck_assert(w.space[1] == .2);
+  ck_assert(w.space[2] == .2);
   ck_assert_int_eq(dvi_multisymplectic_parse(NULL, &w), DVI_BAD_ARGUMENT);
 }
 END_TEST
@@ -214,6 +227,8 @@ START_TEST(bad_axes_and_weights_are_refused)
   refuse(&w.terms, DVI_BAD_ARGUMENT, "they ascend");
   lattice_terms(&w), w.terms.weights.space[0] = .3;
   refuse(&w.terms, DVI_BAD_ARGUMENT, "the weight of x is 0.3");
+  lattice_terms(&w), w.terms.weights.axes = 2;
+  refuse(&w.terms, DVI_BAD_ARGUMENT, "weights of 2 axes, and the field has 1");
   lattice_terms(&w), w.terms.weights.time = (double)NAN;
   refuse(&w.terms, DVI_BAD_ARGUMENT, "the weight of time is nan");
   w.axes = 3, lattice_terms(&w), w.terms.cells[0] = w.terms.cells[1] = w.terms.cells[2] = 10000000;
@@ -287,6 +302,36 @@ START_TEST(bad_conditions_and_symmetries_are_refused)
   refuse(&w.terms, DVI_BAD_ARGUMENT, "-1 conditions");
   lattice_terms(&w), w.terms.symmetry = &nameless, w.terms.symmetries = 1;
   refuse(&w.terms, DVI_BAD_ARGUMENT, "symmetry 0 has no name");
+}
+END_TEST
+
+/* A potential that fails, or is defined for positive values alone. */
+static int failing_potential(int count, double t, const double *x, const double *z, double *l,
+                             double *l_z, double *l_zz, void *user)
+{
+  const int result = *(int *)user;
+  (void)t, (void)x;
+  for (int i = 0; i < count; i++) {
+    if (result < 0 || (result > 0 && !(z[i] > 0))) return result;
+    if (l) l[i] = log(z[i]);
+    if (l_z) l_z[i] = 1 / z[i];
+    if (l_zz) l_zz[i] = -1 / (z[i] * z[i]);
+  }
+  return 0;
+}
+
+/* Values where a density is not defined are none of a failure. */
+START_TEST(densities_that_fail_are_refused_at_create)
+{
+  int result = -7;
+  lattice w = {.step = .1, .V = "sine"};
+  lattice_terms(&w), w.part[2].density = failing_potential, w.part[2].user = &result;
+  refuse(&w.terms, DVI_CALLBACK_FAILED, "the density potential failed with -7 at t = 0");
+  for (result = 0; result < 2; result++) {
+    dvi_march *march = NULL;
+    ck_assert_msg(dvi_multisymplectic_create(&w.terms, &march) == DVI_OK, "%s", dvi_last_error());
+    dvi_march_destroy(&march);
+  }
 }
 END_TEST
 
@@ -449,6 +494,7 @@ SUITE(lattice_marches)
   tcase_add_test(tests, bad_steps_are_refused);
   tcase_add_test(tests, bad_densities_are_refused);
   tcase_add_test(tests, bad_conditions_and_symmetries_are_refused);
+  tcase_add_test(tests, densities_that_fail_are_refused_at_create);
   tcase_add_loop_test(tests, failures_of_callbacks_leave_a_good_state, 0, 3);
   tcase_add_test(tests, failed_steps_change_no_bit_of_later_ones);
   tcase_add_test(tests, starts_beyond_the_density_leave_the_state);

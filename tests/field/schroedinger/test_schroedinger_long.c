@@ -1,4 +1,4 @@
-/* labels: invariant long */
+/* labels: invariant slow long */
 /* The norm and the energy over a million steps. */
 #include <math.h>
 

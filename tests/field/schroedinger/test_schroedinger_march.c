@@ -10,7 +10,7 @@
 #include "support/files.h"
 #include "support/suite.h"
 
-static const double start_at[] = {1, 0.5};
+static const double pi = 3.14159265358979323846, start_at[] = {1, 0.5};
 
 static quantum make_oscillator(double interaction)
 {
@@ -257,6 +257,8 @@ START_TEST(terms_are_refused_with_a_reason)
   check_terms(fem, 0, (terms){.size = 1}, DVI_BAD_ARGUMENT, "terms.size");
   check_terms(fem, 0, (terms){.hbar = -1}, DVI_BAD_ARGUMENT, "hbar = -1");
   check_terms(fem, 0, (terms){.mass = NAN}, DVI_BAD_ARGUMENT, "mass");
+  check_terms(fem, 0, (terms){.hbar = 1e-300}, DVI_BAD_ARGUMENT, "hbar^2/(2 mass) = 0");
+  check_terms(fem, 0, (terms){.mass = 1e-300}, DVI_BAD_ARGUMENT, "units in which");
   check_terms(fem, 0, (terms){.interaction = INFINITY}, DVI_NOT_FINITE, "interaction is inf");
   check_terms(fem, 0, (terms){.potential = undefined}, DVI_NOT_FINITE, "at (-0.9");
   check_terms(fem, 0, (terms){.potential = enormous}, DVI_NOT_FINITE, "is -1e+200 at (-0.9");
@@ -286,12 +288,12 @@ END_TEST
 
 START_TEST(steps_that_do_not_converge_leave_psi)
 {
-  quantum q = make_oscillator(400);
+  quantum q = make_oscillator(-400);
   dvi_march *march = quantum_march(&q, "midpoint", 0.5);
   start_wave(march, &q, packet, start_at);
   double *before = sample_march(march, DVI_FORM_A);
   ck_assert(dvi_march_advance(march, 1) == DVI_NOT_CONVERGED);
-  check_words("take a shorter step");
+  check_words("Newton's method leaves an error of ");
   double *after = sample_march(march, DVI_FORM_A);
   ck_assert(memcmp(before, after, 2 * (size_t)q.functions * sizeof *before) == 0);
   free(before);
@@ -323,12 +325,13 @@ START_TEST(stationary_states_are_refused_with_a_reason)
   quantum q = make_oscillator(0),
           free_particle = quantum_on_line("fourier:modes=3", 0, 1, 1, NULL, 0);
   double energy[64];
+  dvi_schroedinger_ground_report state;
   ck_assert(dvi_schroedinger_modes(q.equation, 60, energy, NULL) == DVI_BAD_SIZE);
   ck_assert(dvi_schroedinger_modes(q.equation, 0, energy, NULL) == DVI_BAD_SIZE);
-  ck_assert(dvi_schroedinger_ground(q.equation, 0, NULL, NULL, NULL) == DVI_BAD_ARGUMENT);
+  ck_assert(dvi_schroedinger_ground(q.equation, 0, NULL, NULL) == DVI_BAD_ARGUMENT);
   check_words("the norm is 0");
-  ck_assert(dvi_schroedinger_ground(free_particle.equation, 1, energy, NULL, NULL) == DVI_OK);
-  ck_assert(fabs(energy[0]) < 1e-15);
+  ck_assert(dvi_schroedinger_ground(free_particle.equation, 1, &state, NULL) == DVI_OK);
+  ck_assert(fabs(state.mu) < 1e-15 && state.followed == 1);
   free_quantum(&q);
   free_quantum(&free_particle);
 }
@@ -353,18 +356,69 @@ START_TEST(equations_are_explained)
 }
 END_TEST
 
+static double complex still_wave(double x, const double *parameter)
+{
+  (void)x, (void)parameter;
+  return 1;
+}
+
+/* Start a wave of density 1 with noise of 1e-6, and give the largest kinetic energy of a thousand
+ * steps. */
+static double noise_after(const char *kind, const char *method, double beta, double step,
+                          double *bound)
+{
+  const dvi_schroedinger_terms terms = {.interaction = beta, .fixed = "none"};
+  quantum q = quantum_with(space_on_line(kind, 0, 2 * pi, 1), &terms);
+  dvi_march *march = quantum_march(&q, method, step);
+  dvi_march_facts facts;
+  double *psi = wave_on(&q, still_wave, NULL), most = 0;
+  for (int64_t i = 0; i < 2 * q.functions; i++)
+    psi[i] += 1e-6 * sin(7.3 * (double)(i + 1) * (double)(i + 2));
+  ck_assert(dvi_march_start(march, &(dvi_march_state){sizeof(dvi_march_state), .A = psi}) ==
+            DVI_OK);
+  dvi_march_facts_of(march, &facts);
+  for (int i = 1; i <= 10; i++) {
+    advance_march(march, 100 * i * step);
+    most = fmax(most, observe_march(march, "kinetic"));
+  }
+  *bound = facts.bound;
+  free(psi);
+  dvi_march_destroy(&march);
+  free_quantum(&q);
+  return most;
+}
+
+/* 1.5 % on both sides of a bound. */
+START_TEST(resonances_grow_beyond_the_bound)
+{
+  static const struct {
+    const char *kind, *method;
+  } cases[] = {{"fourier:modes=8,points=17", "split"},
+               {"fourier:modes=8,points=17", "split:order=4"},
+               {"fem:degree=2,cells=20,lumped=yes", "split"},
+               {"legendre:degree=12", "split"}};
+  double bound, unused;
+  (void)noise_after(cases[_i].kind, cases[_i].method, 4, 1e-3, &bound);
+  ck_assert_double_lt(noise_after(cases[_i].kind, cases[_i].method, 4, 0.985 * bound, &unused),
+                      1e-7);
+  ck_assert_double_gt(noise_after(cases[_i].kind, cases[_i].method, 4, 1.015 * bound, &unused),
+                      1e-7);
+}
+END_TEST
+
+/* T = 32 and beta |psi|^2 = 4 on the circle. */
 START_TEST(only_resonances_bound_the_step)
 {
-  quantum q = quantum_on_line("fourier:modes=8,points=17", 0, 6.283185307179586, 1, NULL, 1);
-  dvi_march *split = quantum_march(&q, "split", 0.05), *gauss = quantum_march(&q, "gauss", 0.05);
-  dvi_march_facts facts;
-  dvi_march_facts_of(split, &facts);
-  ck_assert(fabs(facts.bound - 3.141592653589793 / 32) < 1e-14);
-  dvi_march_facts_of(gauss, &facts);
-  ck_assert(isinf(facts.bound));
-  dvi_march_destroy(&split);
-  dvi_march_destroy(&gauss);
-  free_quantum(&q);
+  const char fourier[] = "fourier:modes=8,points=17", fem[] = "fem:degree=2,cells=20,lumped=yes";
+  double bound;
+  (void)noise_after(fourier, "split", 4, 1e-3, &bound);
+  ck_assert_double_eq_tol(32 * bound + 2 * atan(4 * bound), pi, 1e-5);
+  (void)noise_after(fourier, "split", -1, 1e-3, &bound);
+  ck_assert_double_eq_tol(bound, pi / 32, 1e-14);
+  (void)noise_after(fourier, "gauss", 4, 1e-3, &bound);
+  ck_assert(isinf(bound));
+  (void)noise_after(fem, "split", -1, 1e-3, &bound);
+  ck_assert(isinf(bound));
 }
 END_TEST
 
@@ -385,12 +439,15 @@ START_TEST(steps_take_no_memory)
   const dvi_schroedinger_terms moving = {.potential = late, .depends_on_time = 1};
   quantum still = make_oscillator(1),
           moved = quantum_with(space_on_line("fem:degree=3,cells=10", -5, 5, 0), &moving),
-          circle = quantum_on_line("fourier:modes=20,points=41", -8, 8, 1, harmonic, 1);
+          circle = quantum_on_line("fourier:modes=20,points=41", -8, 8, 1, harmonic, 1),
+          strong = make_oscillator(400);
   for (int i = 0; i < METHODS; i++) {
     check_no_allocation(&still, methods[i]);
     check_no_allocation(&circle, methods[i]);
   }
   check_no_allocation(&moved, "midpoint");
+  check_no_allocation(&strong, "midpoint");
+  free_quantum(&strong);
   free_quantum(&still);
   free_quantum(&moved);
   free_quantum(&circle);
@@ -405,10 +462,9 @@ static dvi_status make_all(dvi_space *space, const char *method)
       .size = sizeof options, .step = 0.05, .method = method};
   dvi_schroedinger *equation = NULL;
   dvi_march *march = NULL;
-  double mu;
   dvi_status status = dvi_schroedinger_create(&terms, &equation);
   if (status == DVI_OK) status = dvi_schroedinger_march(equation, &options, &march);
-  if (status == DVI_OK) status = dvi_schroedinger_ground(equation, 1, &mu, NULL, NULL);
+  if (status == DVI_OK) status = dvi_schroedinger_ground(equation, 1, NULL, NULL);
   dvi_march_destroy(&march);
   dvi_schroedinger_destroy(&equation);
   return status;
@@ -452,6 +508,7 @@ SUITE(schroedinger_march)
   tcase_add_test(tests, stationary_states_are_refused_with_a_reason);
   tcase_add_test(tests, equations_are_explained);
   tcase_add_test(tests, only_resonances_bound_the_step);
+  tcase_add_loop_test(tests, resonances_grow_beyond_the_bound, 0, 4);
   tcase_add_test(tests, steps_take_no_memory);
   tcase_add_test(tests, every_lack_of_memory_is_reported);
 }

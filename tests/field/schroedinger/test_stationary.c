@@ -105,14 +105,23 @@ START_TEST(splitting_of_a_double_well_has_its_digits)
 }
 END_TEST
 
-/* Mathieu's characteristic number a_0(1)/2 from 2K+1 = 9, 13 and 17 functions. */
+/* Errors of Mathieu's characteristic number a_0(1)/2 with 2K+1 functions, as an independent program
+ * finds them: Galerkin's method from above, and collocation from below. */
 START_TEST(fourier_converges_faster_than_any_power)
 {
-  const char *const kind[] = {"fourier:modes=4", "fourier:modes=6", "fourier:modes=8"};
-  const double most[] = {1e-5, 5e-9, 1e-12};
-  for (int i = 0; i < 3; i++)
-    check_modes(quantum_on_line(kind[i], 0, 2 * pi, 1, mathieu, 0), 1,
-                (double[]){-.22756930205370714}, most[i]);
+  static const struct {
+    const char *kind;
+    double error;
+  } cases[] = {{"fourier:modes=4", 4.762275e-6},
+               {"fourier:modes=6", 2.030475e-9},
+               {"fourier:modes=8", 3.18e-13},
+               {"fourier:modes=4,points=9", -1.451598e-5},
+               {"fourier:modes=6,points=13", -3.135931e-9},
+               {"fourier:modes=8,points=17", -3.20e-13}};
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+    check_modes(quantum_on_line(cases[i].kind, 0, 2 * pi, 1, mathieu, 0), 1,
+                (double[]){-.22756930205370714 + cases[i].error},
+                1e-6 * fabs(cases[i].error) + 1e-14);
 }
 END_TEST
 
@@ -268,10 +277,13 @@ typedef struct condensate {
 static condensate ground_of(quantum q, int axes, double norm)
 {
   condensate found;
+  dvi_schroedinger_ground_report state;
   dvi_schroedinger_values v;
   double *psi = calloc(2 * (size_t)q.functions, sizeof *psi);
-  ck_assert_msg(dvi_schroedinger_ground(q.equation, norm, &found.mu, &found.energy, psi) == DVI_OK,
-                "%s", dvi_last_error());
+  ck_assert_msg(dvi_schroedinger_ground(q.equation, norm, &state, psi) == DVI_OK, "%s",
+                dvi_last_error());
+  found.mu = state.mu;
+  found.energy = state.energy;
   ck_assert(dvi_schroedinger_measure(q.equation, 0, psi, &v) == DVI_OK);
   ck_assert(fabs(v.norm - norm) < 1e-13 && fabs(v.energy - found.energy) < 1e-12 * fabs(v.energy));
   found.virial = 2 * v.kinetic - 2 * v.potential + axes * v.interaction;
@@ -329,8 +341,10 @@ START_TEST(condensates_turn_by_their_chemical_potential)
 {
   const dvi_schroedinger_terms terms = {.potential = harmonic, .interaction_at = tenfold};
   quantum q = quantum_with(space_on_line("fem:degree=8,cells=20", -9, 9, 0), &terms);
-  double mu, *psi = calloc(2 * (size_t)q.functions, sizeof *psi);
-  ck_assert(dvi_schroedinger_ground(q.equation, 1, &mu, NULL, psi) == DVI_OK);
+  double *psi = calloc(2 * (size_t)q.functions, sizeof *psi);
+  dvi_schroedinger_ground_report state;
+  ck_assert(dvi_schroedinger_ground(q.equation, 1, &state, psi) == DVI_OK);
+  const double mu = state.mu;
   ck_assert(fabs(mu - condensates[0].mu) < 1e-9);
   dvi_march *march = quantum_march(&q, "gauss:stages=4", 0.05);
   const dvi_march_state start = {.size = sizeof start, .A = psi};
@@ -369,28 +383,72 @@ START_TEST(attraction_makes_a_soliton)
 }
 END_TEST
 
-static int two_wells(int64_t count, double t, const double *x, double *V, void *user)
+/* A sinc collocation of an independent program gives the pitchfork at beta = -0.0912775, and these
+ * states beyond it, where the even ones have E = 0.888277082 and 0.775507855. */
+static const struct {
+  double beta, followed, mu, energy, place;
+} wells[] = {{-0.02, 1, 0.8955655280, 0.8979868942, 0},
+             {-0.1, 0.912775, 0.873719253145, 0.888172885827, 0.729757626},
+             {-1, 0.0912775, 0.368701131475, 0.653829135802, 1.800216002}};
+
+START_TEST(attraction_leads_to_one_side_of_a_double_well)
 {
-  (void)t, (void)user;
-  for (int64_t i = 0; i < count; i++) V[i] = (x[i] * x[i] - 4) * (x[i] * x[i] - 4) / 8;
-  return 0;
+  static const char *const kinds[] = {"fem:degree=8,cells=40", "fourier:modes=64"};
+  const int well = _i / 2;
+  quantum q = quantum_on_line(kinds[_i % 2], -7, 7, _i % 2, double_well, wells[well].beta);
+  dvi_schroedinger_ground_report state;
+  dvi_schroedinger_values v;
+  double *psi = calloc(2 * (size_t)q.functions, sizeof *psi);
+  ck_assert_msg(dvi_schroedinger_ground(q.equation, 1, &state, psi) == DVI_OK, "%s",
+                dvi_last_error());
+  ck_assert(dvi_schroedinger_measure(q.equation, 0, psi, &v) == DVI_OK);
+  ck_assert_double_eq_tol(state.mu, wells[well].mu, well == 0 ? 1e-9 : 1e-11);
+  ck_assert_double_eq_tol(state.energy, wells[well].energy, well == 0 ? 1e-9 : 1e-11);
+  ck_assert_double_eq_tol(fabs(v.position[0]), wells[well].place, 1e-8);
+  ck_assert_double_eq_tol(state.followed, wells[well].followed, 1e-3);
+  free(psi);
+  free_quantum(&q);
+}
+END_TEST
+
+static dvi_schroedinger_ground_report ground_beside(quantum q, dvi_status expected)
+{
+  dvi_schroedinger_ground_report state = {0};
+  ck_assert_int_eq(dvi_schroedinger_ground(q.equation, 1, &state, NULL), expected);
+  free_quantum(&q);
+  return state;
 }
 
-/* With little attraction the ground state is in both wells. With more, states in one have less
- * energy: minimising E by BFGS from one well gives 0.88817 for beta = -0.1, and the even state has
- * 0.88828. */
-START_TEST(states_that_attraction_splits_are_no_ground_states)
+/* Townes' soliton has norm 5.850448. Below it there is a state, whatever the trap. */
+START_TEST(attraction_collapses_in_two_dimensions)
 {
-  static const char *const kinds[] = {"fem:degree=4,cells=40", "fourier:modes=40"};
-  double energy = 0;
-  quantum q = quantum_on_line(kinds[_i], -6, 6, _i, two_wells, -0.02);
-  ck_assert_int_eq(dvi_schroedinger_ground(q.equation, 1, NULL, &energy, NULL), DVI_OK);
-  ck_assert(energy > 0.8882 && energy < 0.9004);
-  free_quantum(&q);
-  q = quantum_on_line(kinds[_i], -6, 6, _i, two_wells, -0.1);
-  ck_assert_int_eq(dvi_schroedinger_ground(q.equation, 1, NULL, &energy, NULL), DVI_NOT_CONVERGED);
-  check_words("less energy");
-  free_quantum(&q);
+  const dvi_schroedinger_terms terms = {
+      .potential = harmonic, .radial = 2, .fixed = "right", .interaction = -5.86};
+  ck_assert(
+      ground_beside(quantum_on_square("fourier:modes=10", -5, 5, 1, harmonic_square, -3), DVI_OK)
+          .followed == 1);
+  (void)ground_beside(quantum_on_square("fourier:modes=10", -5, 5, 1, harmonic_square, -5.86),
+                      DVI_NOT_CONVERGED);
+  check_words("has to be below 5.85");
+  (void)ground_beside(quantum_with(space_on_line("fem:degree=4,cells=9", 0, 6, 0), &terms),
+                      DVI_NOT_CONVERGED);
+  check_words("attraction lets all states collapse");
+}
+END_TEST
+
+/* In three dimensions metastable states end at |beta| = 4 pi 0.57497 = 7.2253 (Ruprecht et al.
+ * 1995; Gammal, Frederico and Tomio 2001). */
+START_TEST(attraction_collapses_in_three_dimensions_later)
+{
+  dvi_schroedinger_terms terms = {
+      .potential = harmonic, .radial = 3, .fixed = "right", .interaction = -7.2};
+  ck_assert(
+      ground_beside(quantum_with(space_on_line("fem:degree=6,cells=20", 0, 7, 0), &terms), DVI_OK)
+          .followed == 1);
+  terms.interaction = -10;
+  (void)ground_beside(quantum_with(space_on_line("fem:degree=6,cells=20", 0, 7, 0), &terms),
+                      DVI_NOT_CONVERGED);
+  check_words("lost at 0.7225");
 }
 END_TEST
 
@@ -412,5 +470,7 @@ SUITE(stationary)
   tcase_add_test(tests, condensates_turn_by_their_chemical_potential);
   tcase_add_test(tests, norm_scales_the_interaction);
   tcase_add_test(tests, attraction_makes_a_soliton);
-  tcase_add_loop_test(tests, states_that_attraction_splits_are_no_ground_states, 0, 2);
+  tcase_add_loop_test(tests, attraction_leads_to_one_side_of_a_double_well, 0, 6);
+  tcase_add_test(tests, attraction_collapses_in_two_dimensions);
+  tcase_add_test(tests, attraction_collapses_in_three_dimensions_later);
 }

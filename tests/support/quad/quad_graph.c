@@ -1,5 +1,7 @@
 #include "support/quad/quad_graph.h"
 
+#include <math.h>
+
 #include "expr/graph_make.h"
 
 #ifdef DVI_HAVE_QUADMATH
@@ -43,6 +45,14 @@ quad quad_operate(dvi__op op, double number, quad a, quad b)
   return 0;
 }
 
+/* Return the larger distance from a value to those at the two ends of an operand. It is infinite if
+ * the operation ends between them, as asin does behind 1. */
+static quad spread_of(quad value, quad above, quad below)
+{
+  const quad up = fabsq(above - value), down = fabsq(below - value);
+  return isnanq(value) || !(isnanq(up) || isnanq(down)) ? fmaxq(up, down) : (quad)HUGE_VAL;
+}
+
 quad quad_error(dvi__op op, double number, quad a, quad a_error, quad b, quad b_error,
                 quad rounding)
 {
@@ -50,11 +60,11 @@ quad quad_error(dvi__op op, double number, quad a, quad a_error, quad b, quad b_
   const quad value = quad_operate(op, number, a, b);
   quad error = rounding * fabsq(value);
   if (operands > 0)
-    error += fmaxq(fabsq(quad_operate(op, number, a + a_error, b) - value),
-                   fabsq(quad_operate(op, number, a - a_error, b) - value));
+    error += spread_of(value, quad_operate(op, number, a + a_error, b),
+                       quad_operate(op, number, a - a_error, b));
   if (operands > 1)
-    error += fmaxq(fabsq(quad_operate(op, number, a, b + b_error) - value),
-                   fabsq(quad_operate(op, number, a, b - b_error) - value));
+    error += spread_of(value, quad_operate(op, number, a, b + b_error),
+                       quad_operate(op, number, a, b - b_error));
   return error;
 }
 

@@ -6,6 +6,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "field/algebra/vectors.h"
 #include "field/algebra/csr.h"
 
 /* Iterations without a smaller residual that end the iteration, and the residual that is good
@@ -20,16 +21,6 @@ typedef struct search {
   double rz;              /* r.z */
   double roundoff;        /* of the scaled right side */
 } search;
-
-static double dot(int64_t n, const double *x, const double *y)
-{
-  double sum[4] = {0, 0, 0, 0};
-  int64_t i = 0;
-  for (; i + 4 <= n; i += 4)
-    for (int j = 0; j < 4; j++) sum[j] += x[i + j] * y[i + j];
-  for (; i < n; i++) sum[0] += x[i] * y[i];
-  return sum[0] + sum[1] + (sum[2] + sum[3]);
-}
 
 static void precondition(const search *s)
 {
@@ -49,7 +40,7 @@ static dvi_status advance(search *s, double *x)
 {
   const int64_t n = s->A->size;
   DVI_TRY(s->A->times(s->A->of, s->p, s->Ap));
-  const double curvature = dot(n, s->p, s->Ap);
+  const double curvature = dvi__dot(n, s->p, s->Ap);
   if (!(curvature > 0))
     return dvi__fail(DVI_SINGULAR,
                      "conjugate gradients: the matrix is not positive: a direction has p.Ap = %g",
@@ -60,7 +51,7 @@ static dvi_status advance(search *s, double *x)
     s->r[i] -= step * s->Ap[i];
   }
   precondition(s);
-  const double rz = dot(n, s->r, s->z), ratio = rz / s->rz;
+  const double rz = dvi__dot(n, s->r, s->z), ratio = rz / s->rz;
   for (int64_t i = 0; i < n; i++) s->p[i] = s->z[i] + ratio * s->p[i];
   s->rz = rz;
   return DVI_OK;
@@ -78,7 +69,7 @@ static dvi_status iterate(search *s, double tolerance, double size, double *x,
     const dvi_status status = advance(s, x);
     if (status == DVI_SINGULAR && is_acceptable(s, smallest, size)) break;
     DVI_TRY(status);
-    const double residual = sqrt(dot(n, s->r, s->r));
+    const double residual = sqrt(dvi__dot(n, s->r, s->r));
     report->iterations++;
     idle = residual < smallest ? 0 : idle + 1;
     if (residual < smallest) smallest = residual;
@@ -111,11 +102,11 @@ static dvi_status solve(search *s, double tolerance, const double *b, double *x,
   memset(x, 0, (size_t)n * sizeof *x);
   for (int64_t i = 0; i < n; i++) s->r[i] = scale * b[i];
   s->roundoff = scale * s->A->roundoff;
-  const double size = sqrt(dot(n, s->r, s->r));
+  const double size = sqrt(dvi__dot(n, s->r, s->r));
   if (!isfinite(size)) return dvi__fail(DVI_NOT_FINITE, "conjugate gradients: |b| is %g", size);
   precondition(s);
   memcpy(s->p, s->z, (size_t)n * sizeof *b);
-  s->rz = dot(n, s->r, s->z);
+  s->rz = dvi__dot(n, s->r, s->z);
   DVI_TRY(iterate(s, tolerance, size, x, report));
   for (int64_t i = 0; i < n; i++) x[i] /= scale;
   if (is_acceptable(s, report->residual * size, size)) return DVI_OK;

@@ -11,6 +11,7 @@
 #include "core/status.h"
 #include "field/algebra/random.h"
 #include "field/algebra/ritz.h"
+#include "field/algebra/vectors.h"
 
 typedef struct lanczos {
   const dvi__pencil *pencil;
@@ -41,18 +42,11 @@ static double bound_by_rows(const dvi__pencil *pencil)
 
 /* ---- the iteration ---- */
 
-static double dot(int64_t n, const double *x, const double *y)
-{
-  double sum = 0;
-  for (int64_t i = 0; i < n; i++) sum += x[i] * y[i];
-  return sum;
-}
-
 /* Make the next direction of length 1 from M r. Returns the length that it had. */
 static dvi_status take_direction(lanczos *s, double *length)
 {
   DVI_TRY(dvi__definite_solve(&s->inverse, s->Mr, s->r, NULL));
-  *length = sqrt(fmax(dot(s->n, s->r, s->Mr), 0));
+  *length = sqrt(fmax(dvi__dot(s->n, s->r, s->Mr), 0));
   double *const old = s->last;
   s->last = s->Mq;
   s->Mq = old;
@@ -69,7 +63,7 @@ static dvi_status advance(lanczos *s)
   const int j = s->T.steps++;
   dvi_matrix_multiply(s->pencil->K, 0, s->q, s->u);
   for (int64_t i = 0; i < s->n; i++) s->u[i] *= s->scale;
-  s->T.alpha[j] = dot(s->n, s->q, s->u);
+  s->T.alpha[j] = dvi__dot(s->n, s->q, s->u);
   for (int64_t i = 0; i < s->n; i++)
     s->Mr[i] = s->u[i] - s->T.alpha[j] * s->Mq[i] - s->T.beta[j] * s->last[i];
   return take_direction(s, &s->T.beta[j + 1]);

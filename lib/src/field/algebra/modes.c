@@ -13,6 +13,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "field/algebra/random.h"
+#include "field/algebra/vectors.h"
 #include "num/eigen.h"
 
 enum { MULTIPLY = 1, MASS = 2, DONE = 99, RESTARTS = 1000, SHIFT_INVERT = 3 };
@@ -156,39 +157,6 @@ static dvi_status create_inverse(const dvi__pencil *pencil, double shift, dvi__d
   return status;
 }
 
-static void swap(int64_t n, double *a, double *b)
-{
-  for (int64_t i = 0; i < n; i++) {
-    const double kept = a[i];
-    a[i] = b[i];
-    b[i] = kept;
-  }
-}
-
-static void sort_modes(int64_t n, int count, double *eigenvalue, double *vector)
-{
-  for (int i = 0; i < count; i++) {
-    int least = i;
-    for (int j = i + 1; j < count; j++)
-      if (eigenvalue[j] < eigenvalue[least]) least = j;
-    if (least == i) continue;
-    swap(1, eigenvalue + i, eigenvalue + least);
-    if (vector != NULL) swap(n, vector + i * n, vector + least * n);
-  }
-}
-
-/* Let the first entry that is at least half of the largest one be positive, so that equal problems
- * have equal modes. */
-static void choose_sign(int64_t n, double *x)
-{
-  double most = 0;
-  for (int64_t i = 0; i < n; i++) most = fmax(most, fabs(x[i]));
-  int64_t first = 0;
-  while (first < n - 1 && fabs(x[first]) < 0.5 * most) first++;
-  if (x[first] >= 0) return;
-  for (int64_t i = 0; i < n; i++) x[i] = -x[i];
-}
-
 static int smaller(int64_t a, int64_t b)
 {
   return (int)(a < b ? a : b);
@@ -296,7 +264,7 @@ static double refine(const dvi__pencil *pencil, int count, double *value, double
     worst = fmax(worst, left / (most * size));
     value[k] = xKx / xMx;
   }
-  sort_modes(n, count, value, vector);
+  dvi__sort_modes(n, count, value, vector);
   return worst;
 }
 
@@ -386,7 +354,7 @@ dvi_status dvi__modes_near(const dvi__pencil *pencil, double shift, int count, d
                      (long long)n, (long long)n - !is_small(n, (int)n));
   DVI_TRY(is_small(n, count) ? modes_of_full(pencil, shift, count, eigenvalue, vector)
                              : modes_by_lanczos(pencil, shift, count, eigenvalue, vector));
-  for (int i = 0; i < count && vector != NULL; i++) choose_sign(n, vector + i * n);
+  for (int i = 0; i < count && vector != NULL; i++) dvi__choose_sign(n, vector + i * n);
   return DVI_OK;
 }
 

@@ -1,10 +1,12 @@
 /* Translations of a linear field on a mesh that repeats itself along all axes,
+ * q -> q + epsilon D_a q with
  *
- *     (D_a u)_v = 1/(2 m_v) sum over neighbours w of  M_1(v,w) (x_w - x_v)_a u_w ,
+ *     (D_a u)_v = -1/(2 m_v) sum over neighbours w of  M_1(v,w) (x_w - x_v)_a u_w ,
  *
- * which is the central difference on a grid. If all vertices have equal surroundings, D_a
- * commutes with K and p.D_a q is conserved as every quadratic invariant with a linear symmetry is.
- * Whether that holds is tested on a random field. */
+ * which is the negative central difference on a grid. It moves the field along the axis, so that
+ * p.D_a q is positive for waves that run there, as -int u' u_x is. If all vertices have equal
+ * surroundings, D_a commutes with K and p.D_a q is conserved as every quadratic invariant with a
+ * linear symmetry is. Whether that holds is tested on a random field. */
 #include <math.h>
 #include <stdio.h>
 
@@ -27,7 +29,7 @@ static dvi_status make(const dvi_field *f, int axis, dvi__csr *D)
   for (int64_t i = 0; i < D->rows; i++)
     for (int64_t e = D->start[i]; e < D->start[i + 1]; e++) {
       dvi__mesh_difference(f->mesh, f->unknown[i], f->unknown[D->column[e]], to);
-      D->value[e] *= -to[axis] / (2 * f->weight[i]);
+      D->value[e] *= to[axis] / (2 * f->weight[i]);
     }
   return DVI_OK;
 }

@@ -98,6 +98,11 @@ dvi_status dvi__lattice_make_axes(const dvi_multisymplectic_terms *terms, dvi__l
   if (terms->components < 1 || terms->components > DVI_COMPONENTS_MAX)
     return dvi__fail(DVI_BAD_SIZE, "multisymplectic: %d components; 1 to %d are possible",
                      terms->components, DVI_COMPONENTS_MAX);
+  if (terms->weights.axes != 0 && terms->weights.axes != terms->axes)
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "multisymplectic: the method has weights of %d axes, and the field has %d; "
+                     "give one weight for all axes, or one for each",
+                     terms->weights.axes, terms->axes);
   lattice->axes = terms->axes;
   lattice->components = terms->components;
   lattice->corners = 1 << terms->axes;

@@ -138,7 +138,12 @@ typedef struct dvi__batch {
   double *more;                            /* [variables*count] for use */
 } dvi__batch;
 
-typedef enum dvi__wants { DVI__WANT_L = 1, DVI__WANT_L_Z = 2, DVI__WANT_L_ZZ = 4 } dvi__wants;
+typedef enum dvi__wants {
+  DVI__WANT_L = 1,
+  DVI__WANT_L_Z = 2,
+  DVI__WANT_L_ZZ = 4,
+  DVI__OF_BOTH_LEVELS = 8 /* only where variables depend on both levels */
+} dvi__wants;
 
 /* Return the doubles that a batch's work needs. */
 int64_t dvi__batch_work(const dvi__lattice *lattice);

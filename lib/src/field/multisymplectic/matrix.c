@@ -25,9 +25,15 @@ static void compare(const dvi__batch *b, const double *first, dvi__lattice_part 
     }
 }
 
+/* Tell if a density is not defined at a place, which is no failure of it. */
+static int is_undefined(dvi_status status)
+{
+  return status == DVI_CALLBACK_RETRY || status == DVI_NOT_FINITE;
+}
+
 /* Evaluate second derivatives at some z and t at random. A density that is not defined there counts
  * as one that varies. */
-static void probe_part(const dvi__lattice *lattice, dvi__lattice_part *part, double *first)
+static dvi_status probe_part(const dvi__lattice *lattice, dvi__lattice_part *part, double *first)
 {
   uint64_t seed = 1;
   memset(part->is_zero, 1, (size_t)part->pairs);
@@ -37,16 +43,19 @@ static void probe_part(const dvi__lattice *lattice, dvi__lattice_part *part, dou
       b.t = k;
       seed = dvi__fill_random((int64_t)part->variables * b.count, seed, b.z);
       for (int i = 0; i < part->variables * b.count; i++) b.z[i] *= 1 + k;
-      if (dvi__batch_evaluate(&b, DVI__WANT_L_ZZ) != DVI_OK) {
+      const dvi_status status = dvi__batch_evaluate(&b, DVI__WANT_L_ZZ);
+      if (is_undefined(status)) {
         memset(part->varies, 1, (size_t)part->pairs);
         memset(part->is_zero, 0, (size_t)part->pairs);
-        return;
+        return DVI_OK;
       }
+      DVI_TRY(status);
       if (k == 0) memcpy(first, b.l_zz, (size_t)part->pairs * (size_t)b.count * sizeof *first);
       compare(&b, first, part);
     }
     cell += b.cells;
   }
+  return DVI_OK;
 }
 
 /* The levels change their places in what mixes rates with other variables. */
@@ -66,8 +75,11 @@ dvi_status dvi__lattice_probe(dvi__lattice *lattice)
 {
   double *first = DVI_NEW(double, dvi__batch_work(lattice));
   if (first == NULL) return dvi__fail(DVI_NO_MEMORY, "multisymplectic: no memory for work");
-  for (int i = 0; i < lattice->parts; i++) probe_part(lattice, &lattice->part[i], first);
+  dvi_status status = DVI_OK;
+  for (int i = 0; i < lattice->parts && status == DVI_OK; i++)
+    status = probe_part(lattice, &lattice->part[i], first);
   dvi__release(first);
+  DVI_TRY(status);
   lattice->is_symmetric = is_symmetric(lattice);
   return DVI_OK;
 }
@@ -248,5 +260,5 @@ dvi_status dvi__lattice_matrix(const dvi__lattice *lattice, const dvi__row *row,
 {
   memset(values, 0, (size_t)dvi__pattern_entries(&lattice->pattern) * sizeof *values);
   dvi__lattice_add_matrix_of_fluxes(lattice, values);
-  return dvi__row_visit(lattice, row, DVI__WANT_L_ZZ, add_matrix, values);
+  return dvi__row_visit(lattice, row, DVI__WANT_L_ZZ | DVI__OF_BOTH_LEVELS, add_matrix, values);
 }

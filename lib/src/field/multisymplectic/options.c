@@ -1,4 +1,4 @@
-/* The words of the method: "multisymplectic:space=1/6,time=midpoint,potential=levels". */
+/* The words of the method: "multisymplectic:space=1/6:0,time=midpoint,potential=levels". */
 #include <dvi/number.h>
 #include <string.h>
 
@@ -19,7 +19,7 @@ static const char *behind(const char *text, const char *word)
 
 static int ends(const char *text)
 {
-  return *text == '\0' || *text == ',';
+  return *text == '\0' || *text == ',' || *text == ':';
 }
 
 /* Read a weight: a word, a number, or a fraction. Returns the text behind it, or NULL. */
@@ -43,17 +43,25 @@ static const char *read_weight(const char *text, double *weight)
   return *weight >= 0 && *weight <= 0.25 && ends(rest) ? rest : NULL;
 }
 
+/* Read a weight of all axes, or one for each of some. */
+static const char *read_axes(const char *text, dvi_multisymplectic_weights *weights)
+{
+  int axes = 1;
+  const char *rest = read_weight(text, weights->space);
+  while (rest != NULL && *rest == ':' && axes < DVI_AXES_MAX)
+    rest = read_weight(rest + 1, weights->space + axes++);
+  weights->axes = axes > 1 ? axes : 0;
+  for (; axes < DVI_AXES_MAX; axes++) weights->space[axes] = weights->space[axes - 1];
+  return rest;
+}
+
 /* Take one option. Returns the text behind it, or NULL if it is none. */
 static const char *take(const char *text, dvi_multisymplectic_weights *weights)
 {
   const char *value = behind(text, "time=");
   if (value != NULL) return read_weight(value, &weights->time);
   value = behind(text, "space=");
-  if (value != NULL) {
-    const char *rest = read_weight(value, &weights->space[0]);
-    for (int d = 1; d < DVI_AXES_MAX; d++) weights->space[d] = weights->space[0];
-    return rest;
-  }
+  if (value != NULL) return read_axes(value, weights);
   value = behind(text, "potential=levels");
   if (value == NULL || !ends(value)) return NULL;
   weights->levels = 1;
@@ -75,7 +83,8 @@ dvi_status dvi_multisymplectic_parse(const char *method, dvi_multisymplectic_wei
       return dvi__fail(DVI_BAD_OPTION,
                        "multisymplectic: \"%.*s\" is no option: \"space=\" and \"time=\" have a "
                        "weight from 0 to 1/4 or one of the words trapezoid, midpoint, exact and "
-                       "fourth, and potentials can be \"potential=levels\"",
+                       "fourth, \"space=\" perhaps one for each axis with colons between them, and "
+                       "potentials can be \"potential=levels\"",
                        (int)strcspn(text, ","), text);
     text = *rest == ',' ? rest + 1 : rest;
   }

@@ -29,6 +29,14 @@ static dvi_status visit_at(const dvi__lattice *lattice, const dvi__row *row, dvi
   return DVI_OK;
 }
 
+/* Tell if a part depends on both levels at a point in time. */
+static int is_of_both(const dvi__lattice_part *part, const double *value)
+{
+  int has_rate = 0;
+  for (int a = 0; a < part->variables; a++) has_rate |= part->variable[a].is_rate;
+  return has_rate || (value[0] > 0 && value[1] > 0);
+}
+
 dvi_status dvi__row_visit(const dvi__lattice *lattice, const dvi__row *row, int wants,
                           dvi__batch_visitor *visit, void *of)
 {
@@ -40,7 +48,8 @@ dvi_status dvi__row_visit(const dvi__lattice *lattice, const dvi__row *row, int 
                           .t = row->t + value[1] * lattice->dt,
                           .level = {value[0], value[1]},
                           .duration = lattice->dt / part->time.count};
-      DVI_TRY(visit_at(lattice, row, &times, wants, visit, of));
+      if (!(wants & DVI__OF_BOTH_LEVELS) || is_of_both(part, value))
+        DVI_TRY(visit_at(lattice, row, &times, wants, visit, of));
     }
   }
   return DVI_OK;

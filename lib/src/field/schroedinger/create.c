@@ -11,6 +11,18 @@
 
 /* ---- checks ---- */
 
+/* Refuse units in which kinetic energies, and their products with slopes, underflow or overflow. */
+static dvi_status check_units(const dvi_schroedinger_terms *terms)
+{
+  const double hbar = terms->hbar > 0 ? terms->hbar : 1, mass = terms->mass > 0 ? terms->mass : 1,
+               kinetic = hbar * hbar / (2 * mass);
+  if (kinetic >= 1e-200 && kinetic <= 1e200) return DVI_OK;
+  return dvi__fail(DVI_BAD_ARGUMENT,
+                   "schroedinger: hbar = %g and mass = %g make hbar^2/(2 mass) = %g, which should "
+                   "be from 1e-200 to 1e200; take units in which hbar and mass are near 1",
+                   hbar, mass, kinetic);
+}
+
 static dvi_status check(const dvi_schroedinger_terms *terms)
 {
   if (terms == NULL || terms->size != sizeof *terms)
@@ -21,6 +33,7 @@ static dvi_status check(const dvi_schroedinger_terms *terms)
     return dvi__fail(DVI_BAD_ARGUMENT,
                      "schroedinger: hbar = %g and mass = %g; both are above 0 and finite",
                      terms->hbar, terms->mass);
+  DVI_TRY(check_units(terms));
   if (terms->radial != 0 && terms->radial != 2 && terms->radial != 3)
     return dvi__fail(DVI_BAD_ARGUMENT,
                      "schroedinger: radial = %d; 2 and 3 dimensions of space are possible, and 0 "

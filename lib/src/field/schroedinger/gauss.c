@@ -9,33 +9,19 @@
  * eigenvalues lambda_j of A and a constant H the equations are s separate ones with M + i h/hbar
  * lambda_j H, and a step multiplies each mode by the diagonal Pade approximant of its phase. What H
  * does not hold of the true one, interaction and change in time, and for fourier the potential, is
- * iterated. Order 2s. Source: Hairer, Lubich and Wanner 2006, secs. II.1.3, IV.2.1 and VI.6. */
+ * iterated (stages.c). Order 2s. Source: Hairer, Lubich and Wanner 2006, secs. II.1.3, IV.2.1 and
+ * VI.6. */
+#include "field/schroedinger/gauss.h"
+
 #include <dvi/quadrature.h>
-#include <math.h>
-#include <string.h>
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "field/schroedinger/shifted.h"
-#include "field/schroedinger/steps.h"
 #include "num/compensated.h"
 #include "num/dense.h"
 #include "num/eigen.h"
-#include "num/finite.h"
 
-enum { MOST = DVI__STAGES_MAX, ITERATIONS = 200 };
-
-struct dvi__gauss {
-  const dvi_schroedinger *s;
-  int stages;
-  double h, node[MOST], A[MOST][MOST], d[MOST];
-  double complex lambda[MOST], X[MOST][MOST], inverse[MOST][MOST];
-  dvi__shifted *solver;
-  dvi__schroedinger_room room;
-  double *V;                  /* [stages][points] if it depends on time */
-  double *Z, *R, *mixed, *HZ; /* [stages][2*free] */
-  double *stage;              /* [2*free] */
-};
+enum { MOST = DVI__STAGES_MAX };
 
 /* ---- coefficients ---- */
 
@@ -54,16 +40,44 @@ static void integrate_basis(int s, const double *c, const double *b, double (*A)
     }
 }
 
-/* Solve A^T d = b. */
-static void find_weights(dvi__gauss *g, const double *b)
+/* Choose what is missing of a_ij and a_ji so that b_i a_ij + b_j a_ji = b_i b_j. */
+static void find_rests(dvi__gauss *g, const double *b)
+{
+  for (int i = 0; i < g->stages; i++)
+    for (int j = 0; j <= i; j++) {
+      const dvi__twofold ij = dvi__exact_product(b[i], g->A[i][j]),
+                         ji = dvi__exact_product(b[j], g->A[j][i]),
+                         wanted = dvi__exact_product(b[i], b[j]),
+                         more = dvi__twofold_plus(dvi__twofold_plus(ij, ji),
+                                                  dvi__twofold_scaled(wanted, -1));
+      g->A_rest[i][j] = -more.head / (2 * b[i]);
+      g->A_rest[j][i] = -more.head / (2 * b[j]);
+    }
+}
+
+/* Solve A^T x = y, in place. */
+static void solve_transposed(const dvi__gauss *g, double *x)
 {
   double transposed[MOST * MOST];
   int pivot[MOST];
-  for (int j = 0; j < g->stages; j++) {
-    g->d[j] = b[j];
+  for (int j = 0; j < g->stages; j++)
     for (int i = 0; i < g->stages; i++) transposed[i * g->stages + j] = g->A[i][j];
+  (void)dvi__dense_solve(g->stages, transposed, pivot, x); /* A of Gauss is regular */
+}
+
+/* Solve A^T d = b, with one correction beyond roundings. */
+static void find_weights(dvi__gauss *g, const double *b)
+{
+  for (int j = 0; j < g->stages; j++) g->d[j] = b[j];
+  solve_transposed(g, g->d);
+  for (int j = 0; j < g->stages; j++) {
+    dvi__twofold left = {b[j], 0};
+    for (int i = 0; i < g->stages; i++)
+      left = dvi__twofold_less_product(left, (dvi__twofold){g->A[i][j], g->A_rest[i][j]},
+                                       (dvi__twofold){g->d[i], 0});
+    g->d_rest[j] = left.head;
   }
-  (void)dvi__dense_solve(g->stages, transposed, pivot, g->d); /* A of Gauss is regular */
+  solve_transposed(g, g->d_rest);
 }
 
 /* Put a pair a +- ib, whose real vectors are columns j and j+1 of X and rows of its inverse. */
@@ -111,6 +125,7 @@ static dvi_status find_coefficients(dvi__gauss *g)
   double b[MOST];
   DVI_TRY(dvi_quadrature(DVI_GAUSS, g->stages, g->node, b));
   integrate_basis(g->stages, g->node, b, g->A);
+  find_rests(g, b);
   find_weights(g, b);
   return diagonalise(g);
 }
@@ -123,7 +138,8 @@ static dvi_status make_room(dvi__gauss *g)
   DVI_TRY(dvi__schroedinger_make_room(g->s, &g->room));
   g->V = DVI_NEW(double, g->s->depends_on_time ? g->stages * g->s->points : 1);
   g->Z = DVI_NEW(double, (4 * g->stages + 1) * n);
-  if (g->V == NULL || g->Z == NULL)
+  g->psi = DVI_NEW(double, g->s->beta != NULL ? 2 * g->stages * g->s->points : 1);
+  if (g->V == NULL || g->Z == NULL || g->psi == NULL)
     return dvi__fail(DVI_NO_MEMORY, "schroedinger: no memory for %d stages of %lld functions",
                      g->stages, (long long)g->s->free);
   g->R = g->Z + g->stages * n;
@@ -143,6 +159,7 @@ dvi_status dvi__gauss_create(const dvi_schroedinger *s, int stages, dvi__gauss *
   dvi_status status = find_coefficients(g);
   if (status == DVI_OK) status = make_room(g);
   if (status == DVI_OK) status = dvi__shifted_create(s, stages, &g->solver);
+  if (status == DVI_OK) status = dvi__gauss_create_newton(g);
   if (status == DVI_OK)
     *made = g;
   else
@@ -154,10 +171,12 @@ void dvi__gauss_destroy(dvi__gauss **gauss)
 {
   if (gauss == NULL || *gauss == NULL) return;
   dvi__gauss *g = *gauss;
+  dvi__krylov_destroy(&g->newton);
   dvi__shifted_destroy(&g->solver);
   dvi__schroedinger_clear_room(&g->room);
   dvi__release(g->V);
   dvi__release(g->Z);
+  dvi__release(g->psi);
   dvi__release(g);
   *gauss = NULL;
 }
@@ -181,98 +200,6 @@ dvi_status dvi__gauss_prepare(dvi__gauss *g, double h)
 
 /* ---- the step ---- */
 
-/* HZ_j = H(t_j,Psi_j) Psi_j. A potential that stands still is evaluated once. */
-static void act(dvi__gauss *g, const double *z)
-{
-  const int64_t n = 2 * g->s->free;
-  for (int j = 0; j < g->stages; j++) {
-    const double *Z = g->Z + j * n,
-                 *V = g->s->depends_on_time ? g->V + j * g->s->points : g->s->still;
-    for (int64_t i = 0; i < n; i++) g->stage[i] = z[i] + Z[i];
-    dvi__schroedinger_act(g->s, V, 1, 2, g->stage, g->HZ + j * n, &g->room);
-  }
-}
-
-/* R_i = M Z_i + i h/hbar sum_j a_ij HZ_j, with i (x + iy) = -y + ix. */
-static void find_residual(dvi__gauss *g)
-{
-  const int64_t n = g->s->free;
-  for (int i = 0; i < g->stages; i++) {
-    double *R = g->R + 2 * i * n;
-    for (int c = 0; c < 2; c++) dvi__schroedinger_mass(g->s, g->Z + (2 * i + c) * n, R + c * n);
-    for (int j = 0; j < g->stages; j++) {
-      const double by = g->h / g->s->hbar * g->A[i][j], *H = g->HZ + 2 * j * n;
-      for (int64_t k = 0; k < n; k++) {
-        R[k] -= by * H[n + k];
-        R[n + k] += by * H[k];
-      }
-    }
-  }
-}
-
-/* to_i += sum_j C_ij from_j of complex vectors. */
-static void mix(const dvi__gauss *g, double complex (*C)[MOST], const double *from, double *to)
-{
-  const int64_t n = g->s->free;
-  memset(to, 0, (size_t)(2 * g->stages * n) * sizeof *to);
-  for (int i = 0; i < g->stages; i++)
-    for (int j = 0; j < g->stages; j++) {
-      const double a = creal(C[i][j]), b = cimag(C[i][j]), *x = from + 2 * j * n;
-      double *y = to + 2 * i * n;
-      for (int64_t k = 0; k < n; k++) {
-        y[k] += a * x[k] - b * x[n + k];
-        y[n + k] += a * x[n + k] + b * x[k];
-      }
-    }
-}
-
-/* Replace R by the correction of Z, apply it, and return its largest component. */
-static double correct(dvi__gauss *g)
-{
-  const int64_t n = 2 * g->s->free, all = g->stages * n;
-  mix(g, g->inverse, g->R, g->mixed);
-  for (int j = 0; j < g->stages; j++) dvi__shifted_solve(g->solver, j, g->mixed + j * n);
-  mix(g, g->X, g->mixed, g->R);
-  for (int64_t i = 0; i < all; i++) g->Z[i] -= g->R[i];
-  return dvi__largest((size_t)all, g->R);
-}
-
-static dvi_status refuse_step(const dvi__gauss *g, double t)
-{
-  return dvi__fail(DVI_NOT_CONVERGED,
-                   "schroedinger: the iteration of the step of %g at t = %g does not converge, "
-                   "because potential or interaction turn phases by too much in it; take a shorter "
-                   "step, or the method split",
-                   g->h, t);
-}
-
-/* Tell if the next correction would be below a rounding of z, or if corrections are roundings that
- * no longer shrink. */
-static int is_settled(double change, double before, double size)
-{
-  return change * change <= 1e-17 * size * before || (change <= 1e-13 * size && change >= before);
-}
-
-/* Iterate until corrections have settled. What the iteration has not reached yet has the same sign
- * in each step, and adds up in the norm: some more corrections make it small against roundings. */
-static dvi_status iterate(dvi__gauss *g, double t, const double *z)
-{
-  const double size = dvi__largest(2 * (size_t)g->s->free, z);
-  double before = size;
-  int settled = 0;
-  memset(g->Z, 0, (size_t)(2 * g->stages * g->s->free) * sizeof *g->Z);
-  for (int i = 0; i < ITERATIONS || settled > 0; i++) {
-    act(g, z);
-    find_residual(g);
-    const double change = correct(g);
-    if (i > 0 && settled == 0 && is_settled(change, before, size)) settled = i;
-    if (settled > 0 && i >= settled + settled / 6) return DVI_OK;
-    if (!(change <= 1e6 * size)) break;
-    before = change;
-  }
-  return refuse_step(g, t);
-}
-
 dvi_status dvi__gauss_step(dvi__gauss *g, double t, double *z, double *compensation)
 {
   const int64_t n = 2 * g->s->free;
@@ -282,11 +209,15 @@ dvi_status dvi__gauss_step(dvi__gauss *g, double t, double *z, double *compensat
     for (int j = 0; j < g->stages; j++)
       DVI_TRY(dvi__schroedinger_potential(g->s, t + g->node[j] * g->h, g->V + j * g->s->points));
   }
-  DVI_TRY(iterate(g, t, z));
+  DVI_TRY(dvi__gauss_solve_stages(g, t, z));
   for (int64_t i = 0; i < n; i++) {
-    double change = 0;
-    for (int j = 0; j < g->stages; j++) change += g->d[j] * g->Z[j * n + i];
+    double change = 0, rest = 0;
+    for (int j = 0; j < g->stages; j++) {
+      change += g->d[j] * g->Z[j * n + i];
+      rest += g->d_rest[j] * g->Z[j * n + i];
+    }
     dvi__add_compensated(z + i, compensation + i, change);
+    dvi__add_compensated(z + i, compensation + i, rest);
   }
   return DVI_OK;
 }

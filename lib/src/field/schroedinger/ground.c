@@ -7,55 +7,37 @@
  *
  * as one sparse system with a border, or for fourier by conjugate gradients on the plane that is
  * tangent to the sphere, where the matrix is positive definite at a minimum of E. The lowest mode
- * is followed from beta = 0 in steps that shrink where Newton's method fails. Source: Bao and Cai
- * 2013, sec. 3. */
+ * is followed from beta = 0 in steps that shrink where Newton's method fails, or where attraction
+ * has made the state a saddle (descent.c). Source: Bao and Cai 2013, sec. 3. */
+#include "field/schroedinger/ground.h"
+
 #include <math.h>
 #include <string.h>
 
 #include "core/memory.h"
 #include "core/status.h"
 #include "field/algebra/conjugate.h"
-#include "field/schroedinger/tangent.h"
+#include "field/algebra/vectors.h"
 
 enum { NEWTON = 40, STEPS = 400 };
 
-typedef struct ground {
-  const dvi_schroedinger *s;
-  double norm, strength; /* of the interaction now, 0 to 1 */
-  double mu;
-  double *z, *kept, *Mz, *Hz, *residual, *change, *product; /* [free] */
-  double *V;                                                /* [points] */
-  double *work;                                             /* [5*free] of conjugate gradients */
-  dvi__schroedinger_room room;
-  dvi__tangent *tangent; /* NULL for fourier */
-} ground;
-
-static double dot(int64_t n, const double *x, const double *y)
-{
-  double sum = 0;
-  for (int64_t i = 0; i < n; i++) sum += x[i] * y[i];
-  return sum;
-}
-
 /* ---- one correction ---- */
 
-/* Scale psi to the norm, and give mu and the residual M mu psi - H psi. */
-static void settle(ground *g)
+void dvi__ground_settle(dvi__ground *g)
 {
   const int64_t n = g->s->free;
   dvi__schroedinger_mass(g->s, g->z, g->Mz);
-  const double by = sqrt(g->norm / dot(n, g->z, g->Mz));
+  const double by = sqrt(g->norm / dvi__dot(n, g->z, g->Mz));
   for (int64_t i = 0; i < n; i++) {
     g->z[i] *= by;
     g->Mz[i] *= by;
   }
   dvi__schroedinger_act(g->s, g->s->still, g->strength, 1, g->z, g->Hz, &g->room);
-  g->mu = dot(n, g->z, g->Hz) / g->norm;
+  g->mu = dvi__dot(n, g->z, g->Hz) / g->norm;
   for (int64_t i = 0; i < n; i++) g->residual[i] = g->mu * g->Mz[i] - g->Hz[i];
 }
 
-/* V + 3 beta psi^2 - mu, the potential of the second variation. */
-static void find_potential(ground *g)
+void dvi__ground_vary(dvi__ground *g)
 {
   const dvi_schroedinger *s = g->s;
   dvi__schroedinger_to_points(s, g->z, g->room.u, g->room.work);
@@ -67,16 +49,16 @@ static void find_potential(ground *g)
 }
 
 /* Take from x its part along psi. The mass is 1. */
-static void make_tangent(const ground *g, double *x)
+static void make_tangent(const dvi__ground *g, double *x)
 {
   const int64_t n = g->s->free;
-  const double part = dot(n, g->z, x) / g->norm;
+  const double part = dvi__dot(n, g->z, x) / g->norm;
   for (int64_t i = 0; i < n; i++) x[i] -= part * g->z[i];
 }
 
 static dvi_status times(void *of, const double *x, double *y)
 {
-  const ground *g = of;
+  const dvi__ground *g = of;
   memcpy(g->product, x, (size_t)g->s->free * sizeof *x);
   make_tangent(g, g->product);
   dvi__schroedinger_act(g->s, g->V, 0, 1, g->product, y, &g->room);
@@ -84,10 +66,9 @@ static dvi_status times(void *of, const double *x, double *y)
   return DVI_OK;
 }
 
-/* The kinetic energy with a constant, which is that of the state's own energies. */
-static void precondition(void *of, const double *r, double *z)
+void dvi__ground_precondition(void *of, const double *r, double *z)
 {
-  const ground *g = of;
+  const dvi__ground *g = of;
   const int64_t n = g->s->free;
   double kinetic = 0;
   for (int64_t i = 0; i < n; i++) kinetic += g->s->diagonal[i] * g->z[i] * g->z[i];
@@ -98,22 +79,22 @@ static void precondition(void *of, const double *r, double *z)
   make_tangent(g, z);
 }
 
-static dvi_status correct_by_gradients(ground *g)
+static dvi_status correct_by_gradients(dvi__ground *g)
 {
   const dvi__products products = {.size = g->s->free,
                                   .times = times,
-                                  .precondition = precondition,
+                                  .precondition = dvi__ground_precondition,
                                   .of = g,
                                   .work = g->work,
-                                  .roundoff = 1e-16 * sqrt(dot(g->s->free, g->Hz, g->Hz))};
+                                  .roundoff = 1e-16 * sqrt(dvi__dot(g->s->free, g->Hz, g->Hz))};
   memcpy(g->kept, g->residual, (size_t)g->s->free * sizeof *g->kept);
   make_tangent(g, g->kept);
   return dvi__conjugate_gradients(&products, 1e-10, g->kept, g->change, NULL);
 }
 
-static dvi_status correct(ground *g)
+static dvi_status correct(dvi__ground *g)
 {
-  find_potential(g);
+  dvi__ground_vary(g);
   if (g->tangent == NULL) return correct_by_gradients(g);
   return dvi__tangent_solve(g->tangent, g->V, g->Mz, g->residual, g->change);
 }
@@ -121,7 +102,7 @@ static dvi_status correct(ground *g)
 /* ---- Newton's method ---- */
 
 /* A ground state has no nodes. Roundings and truncated series may still cross 0. */
-static int is_positive(ground *g)
+static int is_positive(dvi__ground *g)
 {
   const dvi_schroedinger *s = g->s;
   double least = 0, most = 0;
@@ -133,112 +114,101 @@ static int is_positive(ground *g)
   return fmin(-least, most) <= 1e-2 * fmax(-least, most);
 }
 
-/* Correct until corrections are roundings. DVI_NOT_CONVERGED or DVI_SINGULAR if the state is too
- * far from the guess. */
-static dvi_status converge(ground *g)
+dvi_status dvi__ground_converge(dvi__ground *g)
 {
   const int64_t n = g->s->free;
   double size = 1, before = 2;
-  settle(g);
+  dvi__ground_settle(g);
   for (int i = 0; i < NEWTON && size < before && size > 1e-15; i++) {
     before = size;
     DVI_TRY(correct(g));
     for (int64_t k = 0; k < n; k++) g->z[k] += g->change[k];
-    settle(g);
-    size = sqrt(dot(n, g->change, g->change) / dot(n, g->z, g->z));
+    dvi__ground_settle(g);
+    size = sqrt(dvi__dot(n, g->change, g->change) / dvi__dot(n, g->z, g->z));
   }
   if (size < 1e-9 && is_positive(g)) return DVI_OK;
   return dvi__fail(DVI_NOT_CONVERGED, "schroedinger: Newton's method ends with changes of %g",
                    size);
 }
 
+/* ---- continuation ---- */
+
 static int is_hopeless(dvi_status status)
 {
   return status != DVI_OK && status != DVI_NOT_CONVERGED && status != DVI_SINGULAR;
 }
 
-/* Follow the state to the whole interaction. */
-static dvi_status follow(ground *g)
+/* Newton's method, and with attraction the test of what it has found. A saddle is a failure. */
+static dvi_status go_on(dvi__ground *g, int *is_saddle)
+{
+  int is_minimum = 1;
+  *is_saddle = 0;
+  DVI_TRY(dvi__ground_converge(g));
+  if (g->attracts) DVI_TRY(dvi__ground_is_minimum(g, &is_minimum));
+  *is_saddle = !is_minimum;
+  return is_minimum ? DVI_OK : DVI_NOT_CONVERGED;
+}
+
+/* Follow the state to the whole interaction, or to where it is lost, or no minimum any more. That
+ * place is known to a thousandth then, four times the last step, and z is the state there. */
+static dvi_status follow(dvi__ground *g)
 {
   const size_t size = (size_t)g->s->free * sizeof *g->z;
-  double done = 0, step = 1;
-  double *good = g->work + 5 * g->s->free;
-  memcpy(good, g->z, size);
-  for (int i = 0; i < STEPS && done < 1 && step > 1e-6; i++) {
-    g->strength = fmin(1, done + step);
-    const dvi_status status = converge(g);
+  const double least_step = 1e-6, near = 2.5e-4;
+  double step = 1;
+  int is_saddle = 0;
+  memcpy(g->good, g->z, size);
+  g->followed = 0;
+  for (int i = 0; i < STEPS && g->followed < 1 && step > (is_saddle ? near : least_step); i++) {
+    g->strength = fmin(1, g->followed + step);
+    const dvi_status status = go_on(g, &is_saddle);
     if (is_hopeless(status)) return status;
     if (status == DVI_OK) {
-      memcpy(good, g->z, size);
-      done = g->strength;
+      memcpy(g->good, g->z, size);
+      g->followed = g->strength;
       step *= 2;
     } else {
-      memcpy(g->z, good, size);
+      memcpy(g->z, g->good, size);
       step /= 4;
     }
   }
-  if (done >= 1) return DVI_OK;
+  return DVI_OK;
+}
+
+static dvi_status refuse_loss(const dvi__ground *g)
+{
   return dvi__fail(
       DVI_NOT_CONVERGED,
       "schroedinger: the ground state is lost at %g of the interaction; attraction may "
       "let it collapse or leave its place open, and repulsion needs cells that resolve "
       "it",
-      done);
-}
-
-/* ---- the kind of stationary point ---- */
-
-static int attracts(const dvi_schroedinger *s)
-{
-  int64_t k = 0;
-  while (s->beta != NULL && k < s->points && !(s->beta[k] < 0)) k++;
-  return s->beta != NULL && k < s->points;
-}
-
-/* Refuse a state whose second variation H + 2 beta psi^2 - mu has two negative eigenvalues. One of
- * their directions at least is tangent to the sphere: attraction has let the state of least energy
- * leave this one, to one side of a double well, say. Without attraction E has one minimum. */
-static dvi_status check_minimum(const ground *g)
-{
-  enum { LOWEST = 2 };
-  const dvi_schroedinger *s = g->s;
-  dvi_schroedinger varied = *s;
-  double energy[LOWEST], *z = DVI_NEW(double, LOWEST * s->free);
-  if (z == NULL)
-    return dvi__fail(DVI_NO_MEMORY, "schroedinger: no memory for %lld functions",
-                     (long long)s->free);
-  varied.still = g->V;
-  const dvi_status status = dvi__schroedinger_lowest(&varied, LOWEST, energy, z);
-  dvi__release(z);
-  DVI_TRY(status);
-  if (energy[1] >= -1e-8 * fabs(energy[0])) return DVI_OK;
-  return dvi__fail(DVI_NOT_CONVERGED,
-                   "schroedinger: attraction has let another state of less energy leave the one "
-                   "with mu = %g, which is that without interaction, followed; take a potential "
-                   "that prefers a place",
-                   g->mu);
+      g->followed);
 }
 
 /* ---- the state ---- */
 
-static dvi_status allocate(ground *g)
+static dvi_status allocate(dvi__ground *g)
 {
   const dvi_schroedinger *s = g->s;
-  g->z = DVI_NEW(double, 13 * s->free + s->points);
+  enum { VECTORS = 15 };
+  g->z = DVI_NEW(double, VECTORS * s->free + s->points);
   if (g->z == NULL)
     return dvi__fail(DVI_NO_MEMORY, "schroedinger: no memory for %lld functions",
                      (long long)s->free);
-  double **const vectors[] = {&g->kept,   &g->Mz,      &g->Hz,  &g->residual,
-                              &g->change, &g->product, &g->work};
-  for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++)
-    *vectors[i] = g->z + (int64_t)(i + 1) * s->free;
-  g->V = g->z + 13 * s->free;
+  double **const vectors[] = {&g->kept,   &g->good,    &g->Mz,    &g->Hz,  &g->residual,
+                              &g->change, &g->product, &g->modes, &g->work};
+  static const int count[] = {1, 1, 1, 1, 1, 1, 1, 2, 5};
+  double *at = g->z + s->free;
+  for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
+    *vectors[i] = at;
+    at += count[i] * s->free;
+  }
+  g->V = at;
   DVI_TRY(dvi__schroedinger_make_room(s, &g->room));
   return s->is_fourier ? DVI_OK : dvi__tangent_create(s, &g->tangent);
 }
 
-/* Energy, E = norm mu - (integral of beta psi^4)/2. */
-static double energy_of(ground *g)
+double dvi__ground_energy(dvi__ground *g)
 {
   const dvi_schroedinger *s = g->s;
   double interaction = 0;
@@ -247,27 +217,46 @@ static double energy_of(ground *g)
     const double density = g->room.u[k] * g->room.u[k];
     interaction += 0.5 * s->weight[k] * s->beta[k] * density * density;
   }
-  return g->norm * g->mu - interaction;
+  return g->norm * g->mu - g->strength * interaction;
 }
 
-static dvi_status find(ground *g)
+/* Find whether there is attraction, and refuse what collapses in two dimensions: a small and dense
+ * state has the less energy the smaller it is. */
+static dvi_status look_for_attraction(dvi__ground *g)
 {
+  const double critical = 5.850448; /* norm of Townes' soliton, laplace Q/2 - Q + Q^3 = 0 */
+  const dvi_schroedinger *s = g->s;
+  double least = 0;
+  for (int64_t k = 0; k < s->points && s->beta != NULL; k++) least = fmin(least, s->beta[k]);
+  g->attracts = least < 0 && s->free >= 4;
+  const double strength = -least * g->norm * s->mass / (s->hbar * s->hbar);
+  if (dvi__ground_dimension(g) != 2 || !(strength >= critical)) return DVI_OK;
+  return dvi__fail(DVI_NOT_CONVERGED,
+                   "schroedinger: attraction lets all states collapse: in two dimensions there is "
+                   "no ground state with |beta| norm mass/hbar^2 = %g, which has to be below %g "
+                   "(Weinstein 1983); take less of the interaction or of the norm",
+                   strength, critical);
+}
+
+static dvi_status find(dvi__ground *g)
+{
+  DVI_TRY(look_for_attraction(g));
   DVI_TRY(allocate(g));
   DVI_TRY(dvi__schroedinger_lowest(g->s, 1, &g->mu, g->z));
+  g->followed = 1;
   if (g->s->beta == NULL) {
-    settle(g);
+    dvi__ground_settle(g);
     return DVI_OK;
   }
   DVI_TRY(follow(g));
-  if (!attracts(g->s) || g->s->free < 4) return DVI_OK;
-  find_potential(g);
-  return check_minimum(g);
+  if (g->followed >= 1) return DVI_OK;
+  return g->attracts && dvi__ground_dimension(g) < 3 ? dvi__ground_descend(g) : refuse_loss(g);
 }
 
-dvi_status dvi_schroedinger_ground(const dvi_schroedinger *equation, double norm, double *mu,
-                                   double *energy, double *psi)
+dvi_status dvi_schroedinger_ground(const dvi_schroedinger *equation, double norm,
+                                   dvi_schroedinger_ground_report *report, double *psi)
 {
-  ground g = {.s = equation, .norm = norm};
+  dvi__ground g = {.s = equation, .norm = norm};
   if (equation == NULL || !(norm > 0) || isinf(norm))
     return dvi__fail(DVI_BAD_ARGUMENT,
                      "schroedinger: an equation and a norm are needed; the norm is %g, and should "
@@ -275,9 +264,9 @@ dvi_status dvi_schroedinger_ground(const dvi_schroedinger *equation, double norm
                      norm);
   const dvi_status status = find(&g);
   if (status == DVI_OK) {
-    dvi__schroedinger_choose_sign(equation->free, g.z);
-    if (mu != NULL) *mu = g.mu;
-    if (energy != NULL) *energy = energy_of(&g);
+    dvi__choose_sign(equation->free, g.z);
+    if (report != NULL)
+      *report = (dvi_schroedinger_ground_report){g.mu, dvi__ground_energy(&g), g.followed};
     if (psi != NULL) dvi__schroedinger_extend(equation, g.z, psi);
   }
   dvi__tangent_destroy(&g.tangent);

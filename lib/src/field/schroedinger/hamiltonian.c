@@ -161,6 +161,25 @@ void dvi__schroedinger_act(const dvi_schroedinger *s, const double *V, double st
     dvi__schroedinger_add_points(s, u + c * s->points, y + c * s->free, room->work);
 }
 
+void dvi__schroedinger_act_beside(const dvi_schroedinger *s, const double *V, const double *psi,
+                                  const double *z, double *y, const dvi__schroedinger_room *room)
+{
+  double *u = room->u, *v = room->u + s->points;
+  for (int c = 0; c < 2; c++) {
+    dvi__schroedinger_kinetic(s, z + c * s->free, y + c * s->free);
+    dvi__schroedinger_to_points(s, z + c * s->free, u + c * s->points, room->work);
+  }
+  for (int64_t k = 0; k < s->points; k++) {
+    const double beta = s->beta != NULL ? s->beta[k] : 0, a = beta != 0 ? psi[k] : 0,
+                 b = beta != 0 ? psi[s->points + k] : 0, w = s->weight[k],
+                 diagonal = V[k] + beta * (a * a + b * b), along = 2 * beta * (a * u[k] + b * v[k]);
+    u[k] = w * (diagonal * u[k] + along * a);
+    v[k] = w * (diagonal * v[k] + along * b);
+  }
+  for (int c = 0; c < 2; c++)
+    dvi__schroedinger_add_points(s, u + c * s->points, y + c * s->free, room->work);
+}
+
 /* ---- free functions ---- */
 
 void dvi__schroedinger_restrict(const dvi_schroedinger *s, const double *psi, double *z)

@@ -10,6 +10,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "field/algebra/random.h"
+#include "field/algebra/vectors.h"
 #include "field/schroedinger/schroedinger.h"
 #include "num/eigen.h"
 
@@ -31,25 +32,18 @@ typedef struct span {
   dvi__schroedinger_room room;
 } span;
 
-static double dot(int64_t n, const double *x, const double *y)
-{
-  double sum = 0;
-  for (int64_t i = 0; i < n; i++) sum += x[i] * y[i];
-  return sum;
-}
-
 /* Append x, made orthogonal to the basis twice, unless little is left of it. */
 static void append(span *b, const double *x)
 {
   double *y = b->basis + b->columns * b->n;
-  const double before = sqrt(dot(b->n, x, x));
+  const double before = sqrt(dvi__dot(b->n, x, x));
   memcpy(y, x, (size_t)b->n * sizeof *y);
   for (int twice = 0; twice < 2; twice++)
     for (int j = 0; j < b->columns; j++) {
-      const double *q = b->basis + j * b->n, part = dot(b->n, q, y);
+      const double *q = b->basis + j * b->n, part = dvi__dot(b->n, q, y);
       for (int64_t i = 0; i < b->n; i++) y[i] -= part * q[i];
     }
-  const double size = sqrt(dot(b->n, y, y));
+  const double size = sqrt(dvi__dot(b->n, y, y));
   if (!(size > 1e-8 * before)) return;
   for (int64_t i = 0; i < b->n; i++) y[i] /= size;
   dvi__schroedinger_act(b->s, b->s->still, 0, 1, y, b->HB + b->columns * b->n, &b->room);
@@ -64,8 +58,8 @@ static dvi_status project(span *b)
   for (int j = 0; j < m; j++) {
     b->unit[j * (m + 1)] = 1;
     for (int i = 0; i < m; i++)
-      b->H[j * m + i] = 0.5 * (dot(b->n, b->basis + i * b->n, b->HB + j * b->n) +
-                               dot(b->n, b->basis + j * b->n, b->HB + i * b->n));
+      b->H[j * m + i] = 0.5 * (dvi__dot(b->n, b->basis + i * b->n, b->HB + j * b->n) +
+                               dvi__dot(b->n, b->basis + j * b->n, b->HB + i * b->n));
   }
   return dvi__eigen_symmetric(m, b->H, b->unit, b->theta, b->Y);
 }
@@ -91,7 +85,7 @@ static double renew(span *b, int count)
     combine(b, b->width, b->basis, y, p);
     combine(b, 0, b->HB, y, w);
     for (int64_t i = 0; i < b->n; i++) w[i] -= b->theta[j] * x[i];
-    if (j < count) worst = fmax(worst, sqrt(dot(b->n, w, w)) / scale);
+    if (j < count) worst = fmax(worst, sqrt(dvi__dot(b->n, w, w)) / scale);
     for (int64_t i = 0; i < b->n; i++) w[i] /= b->s->diagonal[i] + energy;
   }
   return worst;

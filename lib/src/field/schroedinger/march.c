@@ -63,6 +63,8 @@ static dvi_status make(dvi__wave_march *m, const dvi_schroedinger_march_options 
   DVI_TRY(dvi__schroedinger_read_method(method, &m->method));
   m->dt = dvi__fit_step(options->step, options->span);
   DVI_TRY(dvi__wave_stepper_create(m->s, &m->method, m->dt, &m->stepper));
+  if (m->method.is_split && m->s->beta != NULL)
+    DVI_TRY(dvi__schroedinger_largest_kinetic(m->s, &m->kinetic));
   m->z = DVI_NEW(double, 2 * m->s->free);
   m->compensation = DVI_NEW(double, 2 * m->s->free);
   if (m->z == NULL || m->compensation == NULL)
@@ -136,14 +138,36 @@ static double time_of(const void *self)
   return m->t;
 }
 
-/* Beside a strong wave, pairs of modes whose kinetic phases turn by pi in a step are in resonance
- * with it (Weideman and Herbst 1986). Cayley's phases stay below pi. */
-static double bound_of(const dvi__wave_march *m)
+/* The largest energy of an interaction that repels, now. */
+static double repulsion_of(const dvi__wave_march *m)
 {
   const dvi_schroedinger *s = m->s;
-  const double pi = 3.141592653589793;
-  if (!m->method.is_split || !s->is_fourier || s->beta == NULL) return INFINITY;
-  return pi * s->hbar / dvi__largest((size_t)s->free, s->diagonal);
+  double *u = m->view->u, *v = u + s->points, most = 0;
+  dvi__schroedinger_to_points(s, m->z, u, m->view->work);
+  dvi__schroedinger_to_points(s, m->z + s->free, v, m->view->work);
+  for (int64_t k = 0; k < s->points; k++)
+    most = fmax(most, s->beta[k] * (u[k] * u[k] + v[k] * v[k]));
+  return most;
+}
+
+/* Beside a wave of a density rho that is the same everywhere, split steps of small amplitudes are a
+ * turn by the kinetic phase a and a shear by 2 beta rho h/hbar of their real and imaginary parts.
+ * They grow if a + 2 atan(beta rho h/hbar) is above pi, where a = T h/hbar on fourier and
+ * 2 atan(T h/(2 hbar)) of Cayley's transform. T is the largest kinetic energy. Below a = pi none
+ * grow beside attraction but those that do so without steps. Source: Weideman and Herbst 1986, for
+ * fourier. */
+static double bound_of(const dvi__wave_march *m)
+{
+  const double pi = 3.141592653589793, hbar = m->s->hbar;
+  if (m->kinetic == 0) return INFINITY;
+  const double B = repulsion_of(m);
+  if (!m->s->is_fourier) return B > 0 ? hbar * sqrt(2 / (m->kinetic * B)) : (double)INFINITY;
+  double below = 0, above = pi * hbar / m->kinetic;
+  for (int i = 0; i < 60 && B > 0; i++) {
+    const double h = 0.5 * (below + above);
+    *(m->kinetic * h / hbar + 2 * atan(B * h / hbar) < pi ? &below : &above) = h;
+  }
+  return above;
 }
 
 static void facts_of(const void *self, dvi_march_facts *facts)

@@ -34,6 +34,7 @@ typedef struct dvi__wave_march {
   dvi__schroedinger_method method;
   dvi__wave_stepper stepper;
   double dt, t0, t;
+  double kinetic; /* the largest kinetic energy, of split with an interaction, else 0 */
   int64_t step;
   double *z, *compensation; /* [2*free] after whole steps */
   dvi__view *view;

@@ -4,8 +4,11 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "field/algebra/largest.h"
+#include "field/algebra/vectors.h"
 #include "field/schroedinger/schroedinger.h"
 #include "num/eigen.h"
+#include "num/finite.h"
 
 enum { FULL_MOST = 400 };
 
@@ -77,23 +80,6 @@ static dvi_status find_full(const dvi_schroedinger *s, int count, double *energy
 
 /* ---- polish ---- */
 
-void dvi__schroedinger_choose_sign(int64_t n, double *z)
-{
-  double most = 0;
-  int64_t first = 0;
-  for (int64_t i = 0; i < n; i++) most = fmax(most, fabs(z[i]));
-  while (first < n - 1 && fabs(z[first]) < 0.5 * most) first++;
-  const double sign = z[first] < 0 ? -1 : 1;
-  for (int64_t i = 0; i < n; i++) z[i] *= sign;
-}
-
-static double dot(int64_t n, const double *x, const double *y)
-{
-  double sum = 0;
-  for (int64_t i = 0; i < n; i++) sum += x[i] * y[i];
-  return sum;
-}
-
 /* The diagonal entries of M and T. */
 static double mass_of(const dvi_schroedinger *s, int64_t i)
 {
@@ -124,15 +110,15 @@ static dvi_status polish(const dvi_schroedinger *s, const dvi__schroedinger_room
                          double *Mx, double *Hx, double *energy)
 {
   const int64_t n = s->free;
-  dvi__schroedinger_choose_sign(n, x);
+  dvi__choose_sign(n, x);
   dvi__schroedinger_mass(s, x, Mx);
-  const double by = 1 / sqrt(dot(n, x, Mx));
+  const double by = 1 / sqrt(dvi__dot(n, x, Mx));
   for (int64_t k = 0; k < n; k++) {
     x[k] *= by;
     Mx[k] *= by;
   }
   dvi__schroedinger_act(s, s->still, 0, 1, x, Hx, room);
-  *energy = dot(n, x, Hx);
+  *energy = dvi__dot(n, x, Hx);
   for (int64_t k = 0; k < n; k++) Hx[k] -= *energy * Mx[k];
   if (is_small(s, Hx, *energy)) return DVI_OK;
   return dvi__fail(DVI_NOT_CONVERGED,
@@ -155,23 +141,6 @@ static dvi_status polish_all(const dvi_schroedinger *s, int count, double *energ
   return status;
 }
 
-static void swap(double *a, double *b)
-{
-  const double kept = *a;
-  *a = *b;
-  *b = kept;
-}
-
-/* Sort states, whose energies may have changed places by roundings. */
-static void sort(int64_t n, int count, double *energy, double *z)
-{
-  for (int i = 1; i < count; i++)
-    for (int j = i; j > 0 && energy[j] < energy[j - 1]; j--) {
-      swap(energy + j, energy + j - 1);
-      for (int64_t k = 0; k < n; k++) swap(z + j * n + k, z + (j - 1) * n + k);
-    }
-}
-
 dvi_status dvi__schroedinger_lowest(const dvi_schroedinger *s, int count, double *energy, double *z)
 {
   dvi_status status;
@@ -182,7 +151,32 @@ dvi_status dvi__schroedinger_lowest(const dvi_schroedinger *s, int count, double
   else
     status = dvi__schroedinger_iterate_modes(s, count, energy, z);
   if (status == DVI_OK) status = polish_all(s, count, energy, z);
-  if (status == DVI_OK) sort(s->free, count, energy, z);
+  /* Energies may have changed places by roundings. */
+  if (status == DVI_OK) dvi__sort_modes(s->free, count, energy, z);
+  return status;
+}
+
+/* ---- the other end ---- */
+
+dvi_status dvi__schroedinger_largest_kinetic(const dvi_schroedinger *s, double *kinetic)
+{
+  if (s->is_fourier) {
+    *kinetic = dvi__largest((size_t)s->free, s->diagonal);
+    return DVI_OK;
+  }
+  double *mass = DVI_NEW(double, s->free);
+  if (mass == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "schroedinger: no memory for %lld functions",
+                     (long long)s->free);
+  for (int64_t i = 0; i < s->free; i++) mass[i] = mass_of(s, i);
+  const dvi_matrix K = dvi__csr_view(&s->T, 1), M = {.rows = s->free,
+                                                     .columns = s->free,
+                                                     .width = 1,
+                                                     .symmetric = 1,
+                                                     .value = mass};
+  const dvi__pencil pencil = {.K = &K, .M = &M, .dimension = s->dimension};
+  const dvi_status status = dvi__largest_eigenvalue(&pencil, kinetic);
+  dvi__release(mass);
   return status;
 }
 

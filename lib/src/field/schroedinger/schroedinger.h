@@ -66,6 +66,11 @@ void dvi__schroedinger_kinetic(const dvi_schroedinger *s, const double *x, doubl
 void dvi__schroedinger_act(const dvi_schroedinger *s, const double *V, double strength, int parts,
                            const double *z, double *y, const dvi__schroedinger_room *room);
 
+/* y = H(psi) z + 2 beta Re(psi* z) psi, the derivative of H(psi) psi along an amplitude z of two
+ * parts. psi [2*points] is not read without an interaction. */
+void dvi__schroedinger_act_beside(const dvi_schroedinger *s, const double *V, const double *psi,
+                                  const double *z, double *y, const dvi__schroedinger_room *room);
+
 /* Give z [free] of coefficients of all functions, and back, with 0 for fixed ones. */
 void dvi__schroedinger_restrict(const dvi_schroedinger *s, const double *psi, double *z);
 void dvi__schroedinger_extend(const dvi_schroedinger *s, const double *z, double *psi);
@@ -79,8 +84,8 @@ void dvi__schroedinger_measure_at(const dvi_schroedinger *s, const double *V, co
 dvi_status dvi__schroedinger_iterate_modes(const dvi_schroedinger *s, int count, double *energy,
                                            double *z);
 
-/* Give a real state the sign of dvi_schroedinger_modes. */
-void dvi__schroedinger_choose_sign(int64_t n, double *z);
+/* Bound the largest kinetic energy of a fourier or nodal space, by a thousandth of it. */
+dvi_status dvi__schroedinger_largest_kinetic(const dvi_schroedinger *s, double *kinetic);
 
 /* The lowest modes z [count][free], real. */
 dvi_status dvi__schroedinger_lowest(const dvi_schroedinger *s, int count, double *energy,

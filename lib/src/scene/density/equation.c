@@ -128,7 +128,7 @@ dvi_status dvi__equation_march(const dvi_scene *scene, const dvi_march_options *
   double *psi = dvi__heap_take(2 * (size_t)s->functions, sizeof *psi);
   const dvi_march_state start = {.size = sizeof start, .A = psi};
   dvi_status status = psi == NULL ? DVI_NO_MEMORY : create(scene, options, march);
-  if (status == DVI_OK) status = dvi__density_interpolate(s, s->start, psi);
+  if (status == DVI_OK) status = dvi__density_interpolate(s, s->start, 0, psi);
   if (status == DVI_OK) status = dvi_march_start(*march, &start);
   if (status != DVI_OK) dvi_march_destroy(march);
   dvi__heap_free(psi);

@@ -51,7 +51,7 @@ bool dvi__density_make_final(dvi_scene *scene)
     return dvi__scene_no_memory(scene);
   }
   dvi__fault_clear();
-  dvi_status status = dvi__density_interpolate(s, s->final, U);
+  dvi_status status = dvi__density_interpolate(s, s->final, 0, U);
   if (status == DVI_OK) status = dvi_density_project(s->density, U, NULL, numbers, NULL, NULL);
   dvi__heap_free(U);
   scene->final_q = numbers;

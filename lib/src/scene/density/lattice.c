@@ -38,6 +38,7 @@ bool dvi__lattice_is_semidiscrete(const dvi_scene *scene, const char *method)
 {
   const struct dvi__scene_density *s = scene->density;
   dvi_multisymplectic_weights weights;
+  if (s->start_moves) return false; /* the first step is one of the field itself */
   if (dvi_multisymplectic_parse(method, &weights) != DVI_OK) return false;
   for (int d = 0; d < s->jets.dimension; d++) {
     const double right = is_lumped(s->axis[d].kind) ? 0 : 1.0 / 6;
@@ -194,6 +195,7 @@ static dvi_status make_terms(const dvi_scene *scene, const dvi_march_options *op
                                        .step = options->step,
                                        .fraction = options->fraction,
                                        .span = options->span,
+                                       .mean_rate = s->start_moves,
                                        .symmetry = s->symmetry,
                                        .symmetries = s->symmetries};
   for (int d = 0; d < s->jets.dimension; d++)
@@ -202,7 +204,19 @@ static dvi_status make_terms(const dvi_scene *scene, const dvi_march_options *op
   return dvi_multisymplectic_parse(options->method, &terms->weights);
 }
 
-/* Start from the values at the vertices, and E = -u_t. */
+/* Set the first level, and E = -u_t, or minus the mean rate to the level after it. */
+static dvi_status find_levels(const struct dvi__scene_density *s, double step, int64_t values,
+                              double *u, double *E)
+{
+  dvi_status status = dvi__density_interpolate(s, s->start, 0, u);
+  if (status == DVI_OK)
+    status = s->start_moves ? dvi__density_interpolate(s, s->start, step, E)
+                            : dvi__density_interpolate_rate(s, E);
+  for (int64_t i = 0; i < values; i++) E[i] = s->start_moves ? (u[i] - E[i]) / step : -E[i];
+  return status;
+}
+
+/* Start from the values at the vertices. */
 static dvi_status start(const dvi_scene *scene, dvi_march *march)
 {
   const struct dvi__scene_density *s = scene->density;
@@ -211,9 +225,9 @@ static dvi_status start(const dvi_scene *scene, dvi_march *march)
   if (u == NULL) return DVI_NO_MEMORY;
   double *const E = u + values;
   const dvi_march_state state = {.size = sizeof state, .A = u, .E = E};
-  dvi_status status = dvi__density_interpolate(s, s->start, u);
-  if (status == DVI_OK) status = dvi__density_interpolate(s, s->start_rate, E);
-  for (int64_t i = 0; i < values; i++) E[i] = -E[i];
+  dvi_march_facts facts;
+  dvi_march_facts_of(march, &facts);
+  dvi_status status = find_levels(s, facts.step, values, u, E);
   if (status == DVI_OK) status = dvi_march_start(march, &state);
   dvi__heap_free(u);
   return status;

@@ -215,7 +215,7 @@ bool dvi__local_read(dvi_scene *scene, const dvi__tree *tree, unsigned may, cons
 bool dvi__local_read_slope(dvi_scene *scene, const dvi__tree *tree, int axis, const char *where,
                            int count, dvi__local **local)
 {
-  return read_function(scene, tree, 0, where, axis, shape_of(count), local);
+  return read_function(scene, tree, DVI__MENTIONS_T, where, axis, shape_of(count), local);
 }
 
 bool dvi__local_read_matrix(dvi_scene *scene, const dvi__tree *tree, const char *where,

@@ -46,7 +46,7 @@ static int wave(int64_t count, const double *x, double *u, double *u_x, double *
   for (int c = 0; c < s->jets.components && failed == 0 && s->start != NULL; c++) {
     failed = dvi__local_value(s->start[c], count, 0, x, u + c * count);
     if (failed == 0) failed = dvi__local_value(m->slope[c], count, 0, x, u_x + c * count);
-    if (failed == 0) failed = dvi__local_value(s->start_rate[c], count, 0, x, u_t + c * count);
+    if (failed == 0) failed = dvi__density_start_rate(s, c, count, x, u_t + c * count);
   }
   return failed;
 }

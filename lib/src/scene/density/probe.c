@@ -14,6 +14,7 @@ struct dvi__density_probe {
   dvi__local *function;
   bool is_integral, has_rates;
   double point[DVI_AXES_MAX];
+  int node; /* of a field of rotations */
 };
 
 /* ---- reading ---- */
@@ -90,10 +91,6 @@ bool dvi__density_read_probes(dvi_scene *scene, const dvi__tree *section)
 {
   struct dvi__scene_density *s = scene->density;
   if (!dvi__want_mapping(scene, section, "probes")) return false;
-  if (s->jets.is_rotation)
-    return dvi__scene_refuse(scene, section->span,
-                             "fields of rotations have no probes; the columns of a run have the "
-                             "entries of the rotation of each node");
   s->probe = dvi__arena_take(&scene->arena, (size_t)section->count + 1, sizeof *s->probe);
   if (s->probe == NULL) return dvi__scene_no_memory(scene);
   for (int i = 0; i < section->count; i++)
@@ -196,11 +193,30 @@ static int moving_value(double t, const double *q, const double *p, double *valu
              : dvi__moving_value(probe->scene, probe->function, t, q, probe->point[0], value);
 }
 
+/* A probe of a field of rotations. */
+static int turning_value(double t, const double *q, const double *p, double *value, void *user)
+{
+  const struct dvi__density_probe *probe = user;
+  return dvi__rotations_value(probe->scene, probe->function, t, probe->node, q, p, value);
+}
+
+static bool try_turning(dvi_scene *scene, struct dvi__density_probe *probe)
+{
+  if (probe->is_integral)
+    return dvi__scene_refuse(scene, probe->span,
+                             "a field of rotations has probes at nodes, and no integrals, as in "
+                             "'{of: \"%s[1,1]\", at: POINT}'",
+                             scene->density->field->name);
+  return dvi__rotations_check_probe(scene, probe->function, probe->name, probe->span, probe->point,
+                                    &probe->node);
+}
+
 static bool try_probe(dvi_scene *scene, struct dvi__density_probe *probe)
 {
   const struct dvi__scene_density *s = scene->density;
   if (s->moving != NULL)
     return dvi__moving_check_probe(scene, probe->function, probe->name, probe->span);
+  if (s->rotations != NULL) return try_turning(scene, probe);
   const int none[DVI_AXES_MAX] = {0};
   double *U = dvi__heap_take((size_t)s->functions, sizeof *U), value;
   if (U == NULL) return dvi__scene_no_memory(scene);
@@ -234,7 +250,9 @@ bool dvi__density_make_probes(dvi_scene *scene)
     struct dvi__density_probe *probe = s->probe + i;
     if (!name_is_new(scene, probe) || !try_probe(scene, probe)) return false;
     list[i] = (dvi_invariant){.name = probe->name,
-                              .value = s->moving != NULL ? moving_value : probe_value,
+                              .value = s->moving != NULL      ? moving_value
+                                       : s->rotations != NULL ? turning_value
+                                                              : probe_value,
                               .user = probe};
   }
   scene->terms.invariants = list;

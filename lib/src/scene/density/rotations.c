@@ -4,12 +4,11 @@
  * constant second derivatives by omega(R) and kappa(R,x), found at points at random, and -V is what
  * is left without them. The nodes are the ends of the cells of the space, which are equal. */
 #include <dvi/group.h>
-#include <dvi/rotations.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "scene/density/scene_density.h"
+#include "scene/density/rotations.h"
 #include "scene/sections/sections.h"
 #include "scene/terms/fault.h"
 #include "text/heap.h"
@@ -27,6 +26,11 @@ struct dvi__scene_rotations {
 static dvi__scene_rotations *rotations_of(const dvi_scene *scene)
 {
   return scene->density->rotations;
+}
+
+const dvi_rotations *dvi__rotations_made(const dvi_scene *scene)
+{
+  return rotations_of(scene)->made;
 }
 
 static bool make_room(dvi_scene *scene)

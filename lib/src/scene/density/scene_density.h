@@ -43,7 +43,7 @@ bool dvi__local_read(dvi_scene *scene, const dvi__tree *tree, unsigned may, cons
 bool dvi__local_read_matrix(dvi_scene *scene, const dvi__tree *tree, const char *where,
                             dvi__local **local);
 
-/* Read the derivative of a function of position along an axis. */
+/* Read the derivative of a function of time and position along an axis. */
 bool dvi__local_read_slope(dvi_scene *scene, const dvi__tree *tree, int axis, const char *where,
                            int count, dvi__local **local);
 
@@ -106,6 +106,7 @@ struct dvi__scene_density {
   int conditions, condition_room;
   bool has_placed_data;             /* a value or a flux depends on position */
   dvi__local **start, **start_rate; /* [components] or NULL for 0 */
+  bool start_moves;                 /* it depends on time, and has its own rates */
   dvi__local **final;               /* [components] or NULL without an end */
   struct dvi__density_probe *probe; /* [probes] */
   int probes;
@@ -168,9 +169,16 @@ bool dvi__refuse_order(dvi_scene *scene, const dvi__local *local, int k, int axi
 /* Give the coefficients [components*functions] of the start and of its rate. */
 bool dvi__density_start(dvi_scene *scene, double *U, double *rate);
 
-/* Interpolate functions of[components], which may be NULL, into U [components*functions]. */
+/* Interpolate functions of[components], which may be NULL, at time t into
+ * U [components*functions]. */
 dvi_status dvi__density_interpolate(const struct dvi__scene_density *s, dvi__local *const *of,
-                                    double *U);
+                                    double t, double *U);
+
+/* Evaluate the rate of a component at the start, which the scene has. Returns as callbacks do.
+ * Interpolate that of all. */
+int dvi__density_start_rate(const struct dvi__scene_density *s, int component, int64_t count,
+                            const double *x, double *rate);
+dvi_status dvi__density_interpolate_rate(const struct dvi__scene_density *s, double *rate);
 
 /* List the parts of the density, at most DVI__DENSITY_CLASSES. Returns how many they are. */
 int dvi__density_parts(const struct dvi__scene_density *s, dvi_density_part *part);
@@ -228,7 +236,7 @@ int dvi__moving_value(const dvi_scene *scene, const dvi__local *function, double
 int dvi__moving_integral(const dvi_scene *scene, const dvi__local *function, double t,
                          const double *q, double *value);
 
-/* ---- fields of rotations (rotations.c) ---- */
+/* ---- fields of rotations (rotations.c, rotations_probe.c) ---- */
 
 /* Read the start, R and omega(R). */
 bool dvi__rotations_read_start(dvi_scene *scene, const dvi__tree *section);
@@ -238,5 +246,12 @@ bool dvi__rotations_take_density(dvi__context *c, dvi__node root);
 bool dvi__rotations_make(dvi_scene *scene);
 void dvi__rotations_clear(dvi_scene *scene);
 void dvi__rotations_explain(const dvi_scene *scene, char *text, size_t size);
+
+/* Find the node of a probe, and refuse what such a probe has not. Evaluate it there. Returns as
+ * callbacks do. */
+bool dvi__rotations_check_probe(dvi_scene *scene, const dvi__local *function, const char *name,
+                                dvi__span span, const double *point, int *node);
+int dvi__rotations_value(const dvi_scene *scene, const dvi__local *function, double t, int node,
+                         const double *q, const double *p, double *value);
 
 #endif

@@ -1,4 +1,5 @@
-/* The section initial: the fields and their rates at t = 0, as functions of position. */
+/* The section initial: the fields and their rates at t = 0, as functions of position. A field that
+ * is given as a function of time, too, has the rates of that. */
 #include <string.h>
 
 #include "scene/density/scene_density.h"
@@ -30,6 +31,23 @@ static bool refuse_key(dvi_scene *scene, const dvi__tree *key)
                            dvi__nearest_or_all(key->text, s->fields, name, hint, sizeof hint));
 }
 
+/* Tell if a start depends on time, and refuse rates beside it. */
+static bool find_motion(dvi_scene *scene, const dvi__tree *section)
+{
+  struct dvi__scene_density *s = scene->density;
+  for (int c = 0; c < s->jets.components; c++)
+    s->start_moves = s->start_moves || (s->start[c] != NULL && s->start[c]->has_time);
+  for (int i = 0; i < section->count && s->start_moves; i++) {
+    bool is_rate;
+    const dvi__declared_field *field = field_of_key(scene, section->key[i]->text, &is_rate);
+    if (is_rate)
+      return dvi__scene_refuse(scene, section->key[i]->span,
+                               "a start that depends on t has rates; leave out the key %s'",
+                               field->name);
+  }
+  return true;
+}
+
 bool dvi__density_read_start(dvi_scene *scene, const dvi__tree *section)
 {
   struct dvi__scene_density *s = scene->density;
@@ -43,25 +61,61 @@ bool dvi__density_read_start(dvi_scene *scene, const dvi__tree *section)
     bool is_rate;
     const dvi__declared_field *field = field_of_key(scene, section->key[i]->text, &is_rate);
     if (field == NULL) return refuse_key(scene, section->key[i]);
-    if (!dvi__local_read(scene, section->child[i], 0, "a start", field->components,
-                         (is_rate ? s->start_rate : s->start) + field->first))
+    if (!dvi__local_read(scene, section->child[i], is_rate ? 0 : DVI__MENTIONS_T, "a start",
+                         field->components, (is_rate ? s->start_rate : s->start) + field->first))
       return false;
   }
-  return true;
+  return find_motion(scene, section);
 }
 
-static int start_at(int64_t count, const double *x, double *f, void *user)
+typedef struct moment {
+  const dvi__local *of;
+  double t;
+} moment;
+
+static int value_at(int64_t count, const double *x, double *f, void *user)
 {
-  return dvi__local_value(user, count, 0, x, f);
+  const moment *at = user;
+  return dvi__local_value(at->of, count, at->t, x, f);
 }
 
 dvi_status dvi__density_interpolate(const struct dvi__scene_density *s, dvi__local *const *of,
-                                    double *U)
+                                    double t, double *U)
 {
   dvi_status status = DVI_OK;
-  for (int c = 0; c < s->jets.components && of != NULL && status == DVI_OK; c++)
+  for (int c = 0; c < s->jets.components && of != NULL && status == DVI_OK; c++) {
+    moment at = {of[c], t};
     if (of[c] != NULL && of[c]->term != NULL)
-      status = dvi_space_interpolate(s->space, start_at, of[c], U + c * s->functions);
+      status = dvi_space_interpolate(s->space, value_at, &at, U + c * s->functions);
+  }
+  return status;
+}
+
+int dvi__density_start_rate(const struct dvi__scene_density *s, int component, int64_t count,
+                            const double *x, double *rate)
+{
+  return s->start_moves ? dvi__local_rates(s->start[component], count, 0, x, rate, NULL)
+                        : dvi__local_value(s->start_rate[component], count, 0, x, rate);
+}
+
+typedef struct start_component {
+  const struct dvi__scene_density *s;
+  int component;
+} start_component;
+
+static int rate_at(int64_t count, const double *x, double *f, void *user)
+{
+  const start_component *of = user;
+  return dvi__density_start_rate(of->s, of->component, count, x, f);
+}
+
+dvi_status dvi__density_interpolate_rate(const struct dvi__scene_density *s, double *rate)
+{
+  dvi_status status = DVI_OK;
+  for (int c = 0; c < s->jets.components && s->start != NULL && status == DVI_OK; c++) {
+    start_component of = {s, c};
+    status = dvi_space_interpolate(s->space, rate_at, &of, rate + c * s->functions);
+  }
   return status;
 }
 
@@ -69,8 +123,8 @@ bool dvi__density_start(dvi_scene *scene, double *U, double *rate)
 {
   const struct dvi__scene_density *s = scene->density;
   dvi__fault_clear();
-  dvi_status status = dvi__density_interpolate(s, s->start, U);
-  if (status == DVI_OK) status = dvi__density_interpolate(s, s->start_rate, rate);
+  dvi_status status = dvi__density_interpolate(s, s->start, 0, U);
+  if (status == DVI_OK) status = dvi__density_interpolate_rate(s, rate);
   return status == DVI_OK ||
          dvi__density_complain(scene, dvi__tree_find(scene->tree, "initial"), status);
 }

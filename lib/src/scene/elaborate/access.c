@@ -165,10 +165,10 @@ dvi__value dvi__coordinate_value(dvi__context *c, const dvi__coordinate *x,
 static dvi__value definition_value(dvi__context *c, int number)
 {
   if (c->definition[number].shape.rank >= 0) return c->definition[number];
-  const int bound = c->index_count;
-  c->index_count = 0;
+  const int seen = c->index_first;
+  c->index_first = c->index_count;
   const dvi__value value = dvi__elaborate(c, c->scene->definition[number].is);
-  c->index_count = bound;
+  c->index_first = seen;
   if (!dvi__failed(value)) c->definition[number] = value;
   return value;
 }
@@ -209,10 +209,10 @@ static const char *write_index_values(const dvi__context *c, int element_number,
 {
   size_t used = 0;
   text[0] = '\0';
-  for (int i = 0; i < c->index_count && used < size; i++) {
+  for (int i = c->index_first; i < c->index_count && used < size; i++) {
     const dvi__index *index = &c->index[i];
-    used += (size_t)snprintf(text + used, size - used, "%s%s = %d", i == 0 ? ", where " : ", ",
-                             index->name,
+    used += (size_t)snprintf(text + used, size - used, "%s%s = %d",
+                             i == c->index_first ? ", where " : ", ", index->name,
                              index->each != NULL ? index->each[element_number] : index->all);
   }
   return text;

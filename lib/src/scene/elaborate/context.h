@@ -39,6 +39,7 @@ typedef struct dvi__context {
   int elements;
   dvi__index index[DVI__INDICES_MAX];
   int index_count;
+  int index_first; /* those before it are around the use of a definition, which does not see them */
   dvi__kernel_input *input;
   int input_count;
   dvi__numbering *numbering;

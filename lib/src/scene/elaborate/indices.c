@@ -11,7 +11,7 @@
 
 const dvi__index *dvi__index_find(const dvi__context *c, const char *name)
 {
-  for (int i = c->index_count - 1; i >= 0; i--)
+  for (int i = c->index_count - 1; i >= c->index_first; i--)
     if (strcmp(c->index[i].name, name) == 0) return &c->index[i];
   return NULL;
 }
@@ -99,6 +99,7 @@ static bool make_still_context(const dvi__context *c, dvi__context *inside)
   if (!dvi__context_make(inside, c->scene, 0, "an index or a bound")) return false;
   inside->elements = c->elements;
   inside->index_count = c->index_count;
+  inside->index_first = c->index_first;
   inside->depth = c->depth;
   memcpy(inside->index, c->index, sizeof c->index);
   return true;
