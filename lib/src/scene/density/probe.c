@@ -190,10 +190,8 @@ static bool check_order(dvi_scene *scene, const dvi__local *f, int k)
 static int moving_value(double t, const double *q, const double *p, double *value, void *user)
 {
   const struct dvi__density_probe *probe = user;
-  (void)p;
-  return probe->is_integral
-             ? dvi__moving_integral(probe->scene, probe->function, t, q, value)
-             : dvi__moving_value(probe->scene, probe->function, t, q, probe->point[0], value);
+  return dvi__moving_value(probe->scene, probe->function, probe->has_rates, t, q, p,
+                           probe->is_integral ? NULL : probe->point, value);
 }
 
 static bool try_probe(dvi_scene *scene, struct dvi__density_probe *probe)
