@@ -113,6 +113,12 @@ sed 's/^moving.*/moving: {motion: equal, stretch: 0.5, mu: 0.01}/;s/0.5\*x/0.5*s
   >arcs.yaml
 expect 0 'arcs of one length' run arcs.yaml --final
 
+# nodes that collide: the step does not end beyond that
+sed 's/^initial.*/initial: {u: 0.1*sin(x)}/
+  s/^moving.*/moving: {mu: 100, velocity: -sin(x)}/' steep.yaml >collide.yaml
+expect 1 'a step that tangles its mesh' run collide.yaml --h 1.2 --t-end 6
+says err 'step 1 from t = 0 with h = 1.2 failed.* the mesh is tangled, cell .* of 32' 'where'
+
 # the same wave across a torus, on triangles: exact momenta of both axes, a jump and conditions
 cat >plane.yaml <<END
 parameters: {A: 0.3, T: 0.8/A, there: (pi/2 + (1 + A)*T)/sqrt(2)}

@@ -162,9 +162,7 @@ const int *dvi_moving_unknowns(const dvi_moving *moving, int *nodes);
  *  Symmetries are "momentum_x" and "momentum_y", translations of all nodes with their values, and
  *  "momentum_u" or "momentum_u1" and so on, if the density allows them and all nodes have the
  *  unknown. A mesh on which a cell has no volume makes the step fail wherever the method evaluates
- *  L, and dvi_last_error() names the cell then. The method midpoint does so in the middle of steps
- *  alone: if nodes have passed each other at the end of a step, the next step fails, and what is
- *  evaluated there.
+ *  L, and at its end, and dvi_last_error() names the cell then.
  *
  *  @param[out] system  owned by the caller, for dvi_system_destroy before the field's end
  *  @retval DVI_SINGULAR  a component has no rate in the density

@@ -182,6 +182,9 @@ int dvi__moving_sum(const dvi_moving *m, const dvi__moving_state *state,
 /* Fail with the reason of a callback, by a status, or else with what it returned. */
 dvi_status dvi__moving_refuse(dvi_status status, int returned);
 
+/* Look for a cell that has no volume. Returns 1 with a reason then, or as the path does. */
+int dvi__moving_admit(const dvi_moving *m, const dvi__moving_state *state);
+
 /* Refuse a state on whose mesh a cell has no volume. DVI_BAD_ARGUMENT, or as the path fails. */
 dvi_status dvi__moving_check(const dvi_moving *m, const dvi__moving_state *state);
 
