@@ -72,8 +72,7 @@ typedef struct dvi_lagrangian {
   int (*gradient)(double t, const double *q, const double *v, double *L_q, double *L_v, void *user);
   int (*gradient_batch)(int count, const double *t, const double *q, const double *v, double *L_q,
                         double *L_v, void *user);
-  /** Second derivatives in the order of the patterns qq, qv (row q, column v) and vv. Default:
-   *  differences of the gradient. */
+  /** In the order of the patterns qq, qv (row q, column v) and vv. Default: differences. */
   int (*hessian)(double t, const double *q, const double *v, double *L_qq, double *L_qv,
                  double *L_vv, void *user);
   int (*hessian_batch)(int count, const double *t, const double *q, const double *v, double *L_qq,
