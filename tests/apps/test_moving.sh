@@ -122,7 +122,7 @@ says err 'step 1 from t = 0 with h = 1.2 failed.* the mesh is tangled, cell .* o
 # the same wave across a torus, on triangles: exact momenta of both axes, a jump and conditions
 cat >plane.yaml <<END
 parameters: {A: 0.3, T: 0.8/A, there: (pi/2 + (1 + A)*T)/sqrt(2)}
-definitions: {s: (x + y)/sqrt(2), w: (1 + A*sin(s))/sqrt(2)}
+definitions: {s: (x + y)/sqrt(2), w: (0.9 + A*sin(s))/sqrt(2)}
 domain: {x: [0, 2*pi*sqrt(2)], y: [0, 2*pi*sqrt(2)]}
 space: fem:degree=1,cells=5
 fields: {u: scalar}
@@ -149,6 +149,16 @@ done
 expect 0 'what is kept' explain plane.yaml
 says out '^a mesh of 50 triangles whose nodes are unknowns: mu = 0.02, kappa = 1, 6 p' 'the mesh'
 says out '^momentum_x, momentum_y, momentum_u: kept to roundoff' 'the momenta'
+! grep caution out || fail 'a caution without a reason'
+sed 's/w: (0.9/w: (1/' plane.yaml >fast.yaml
+expect 0 'nodes as fast as waves' explain fast.yaml
+says out '^caution: as fast as waves or faster are 25 of the nodes, such as that at x = 0, 0' 'a caution'
+sed '/^until/d;s/^moving.*/moving: {motion: x - 0.9*t}/' steep.yaml >outrun.yaml
+expect 0 'a path that is faster than some waves' explain outrun.yaml
+says out '^caution: as fast as waves or faster are' 'a caution'
+sed 's/0.9\*t/0.6*t/' outrun.yaml >slow.yaml
+expect 0 'a path that is slower than waves' explain slow.yaml
+! grep caution out || fail 'a caution without a reason'
 expect 0 'derivatives in a plane' check plane.yaml
 expect 0 'nodes of a plane' run plane.yaml --t-end 0.5 --columns x_1,y_25,u_2 --pvd plane.pvd
 says plane_000000.vtu 'NumberOfCells="50"' 'triangles'

@@ -25,6 +25,13 @@ struct dvi__scene_moving {
 int dvi__moving_place_derivative(int count, double t, const double *x, const double *z, double *l_x,
                                  double *l_xz, double *l_xx, void *user);
 
+/* Give the start, as in dvi_moving_start. `user` is the scene_moving. */
+dvi_moving_wave dvi__moving_wave;
+
+/* Count the nodes that at the start are as fast as waves, or faster, and give the position of the
+ * first one. */
+int dvi__moving_fast_nodes(const dvi_scene *scene, double *x);
+
 /* Name the coordinates: the positions that are unknown by the axes, and values by their fields. */
 bool dvi__moving_name_unknowns(dvi_scene *scene);
 

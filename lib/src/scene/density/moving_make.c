@@ -168,9 +168,8 @@ static bool create(dvi_scene *scene)
 
 /* ---- the start ---- */
 
-/* Give a wave, as in dvi_moving_start. `user` is the scene_moving. */
-static int wave(int64_t count, const double *x, double *u, double *u_x, double *u_t,
-                double *velocity, void *user)
+int dvi__moving_wave(int64_t count, const double *x, double *u, double *u_x, double *u_t,
+                     double *velocity, void *user)
 {
   const dvi__scene_moving *m = user;
   const struct dvi__scene_density *s = m->density;
@@ -197,7 +196,7 @@ static bool make_start(dvi_scene *scene)
   scene->v = scene->q + n;
   scene->p = scene->v + n;
   const dvi__tree *initial = dvi__tree_find(scene->tree, "initial");
-  const dvi_status status = dvi_moving_start(s->moving->made, wave, s->moving, scene->q,
+  const dvi_status status = dvi_moving_start(s->moving->made, dvi__moving_wave, s->moving, scene->q,
                                              s->is_static ? NULL : scene->v,
                                              s->is_static ? NULL : scene->p);
   return status == DVI_OK ||
@@ -241,6 +240,22 @@ static void explain_momenta(const dvi_scene *scene, char *text, size_t size)
                      ": kept to roundoff by methods that keep linear momenta, such as midpoint\n");
 }
 
+/* Tell of nodes that are faster than waves at the start. */
+static void explain_speed(const dvi_scene *scene, char *text, size_t size)
+{
+  double x[DVI_MOVING_AXES_MAX] = {0};
+  const int count = scene->density->is_static ? 0 : dvi__moving_fast_nodes(scene, x);
+  if (count == 0) return;
+  (void)dvi__print(text, size,
+                   "caution: as fast as waves or faster are %d of the nodes, such as that at %s = ",
+                   count, scene->density->jets.axis[0]);
+  size_t used = strlen(text);
+  for (int i = 0; i < scene->density->jets.dimension; i++, used = strlen(text))
+    (void)dvi__print(text + used, size - used, "%s%.6g", i > 0 ? ", " : "", x[i]);
+  (void)dvi__print(text + used, size - used,
+                   ": short errors grow there; let the nodes move more slowly\n");
+}
+
 void dvi__moving_explain(const dvi_scene *scene, char *text, size_t size)
 {
   static const char *const words[] = {"are unknowns", "follow a path",
@@ -255,6 +270,8 @@ void dvi__moving_explain(const dvi_scene *scene, char *text, size_t size)
                    cells, plane ? "triangles" : "cells", words[m->terms.motion], m->terms.mu,
                    m->terms.kappa, m->terms.points,
                    plane ? "points a triangle" : "Gauss points a cell", scene->n);
-  const size_t used = strlen(text);
+  size_t used = strlen(text);
   explain_momenta(scene, text + used, size - used);
+  used = strlen(text);
+  explain_speed(scene, text + used, size - used);
 }
