@@ -25,6 +25,7 @@ typedef struct dvi__local {
   int pairs, entries; /* entries of the pattern, which has both triangles */
   int (*pair)[2];     /* [pairs] a >= b */
   int *entry;         /* [pairs] of each pair in the pattern */
+  double straight;    /* of a fixed value that is straight between multiples of this time, or 0 */
 } dvi__local;
 
 /* Make a function of kernels of one element, and empty the list. */
