@@ -109,6 +109,33 @@ sed 's/^initial/boundary: {left: {fixed: 0}}\n&/;s/0.3/0/' path.yaml >held.yaml
 expect 0 'a path' run path.yaml --final
 expect 0 'a path beside a fixed end' run held.yaml --final
 expect 2 'a tangled path' run path.yaml --set no=1
+# on a ring with a jump a field 0.7 t + 1.3 x stays to rounding, in a plane with two points a step
+cat >affine.yaml <<END
+domain: {x: [0, 1]}
+space: fem:degree=1,cells=8
+fields: {u: scalar}
+density: u'^2/2 - d(u,x)^2/2 - d(u,x)^4/12
+boundary: periodic
+initial: {u: 1.3*x, u': 0.7}
+moving: {motion: x + 0.1*sin(2*t)*sin(2*pi*x), path_step: 0.05, jump: 1.3}
+probes: {a: u(0.5), b: {integral: "(d(u,x) - 1.3)^2 + (u' - 0.7)^2"}}
+method: midpoint
+step: 0.05
+until: 1
+END
+expect 0 'an affine field' run affine.yaml --final
+about out a 1.35 5e-15
+about out b 0 1e-26
+sed "s/x: .0, 1./&, y: [0, 1]/;s/cells=8/cells=3/;s/d(u,x)^2.2/dot(grad(u),grad(u))\/2/
+  s/motion: \(.*\), path.*/motion: [\1, y - 0.05*sin(3*t)], jump: {x: 1.3}, path_step: 0.05}/
+  s/u(0.5)/'u(0.5, 0.5)'/;s/'u(\(.*\))'/\"u(\1)\"/" affine.yaml >sheet.yaml
+expect 0 'an affine field of a plane' run sheet.yaml --final --method galerkin:degree=1,nodes=2
+about out a 1.35 5e-15
+
+# the order in time of nodes that are unknowns
+expect 0 'an order' order steep.yaml --set A=0.3 --t-end 0.5 --h 0.1 --levels 4
+says out 'midpoint: claimed order 2, fitted .*: ok' 'the order'
+
 sed 's/^moving.*/moving: {motion: equal, stretch: 0.5, mu: 0.01}/;s/0.5\*x/0.5*sin(x)/' path.yaml \
   >arcs.yaml
 expect 0 'arcs of one length' run arcs.yaml --final
