@@ -91,8 +91,8 @@ typedef struct dvi_moving_terms {
   double stretch; /**< of DVI_MOVING_EQUAL, at least 0 */
   double mu;      /**< mass of a node, at least 0. Needed where u is straight */
   double kappa;   /**< stiffness of the cells, at least 0 */
-  /** A monitor m(x) > 0 [count], whose integral is the same in all cells of reference. Default:
-   *  equal cells */
+  /** A monitor m(x) > 0 [count], whose integral is the same in all cells of reference. It is
+   *  sampled at 16384 points or more, until its integral settles. Default: equal cells */
   int (*monitor)(int64_t count, const double *x, double *m, void *user);
   dvi_moving_end left, right; /**< without periodic ends */
   /** [dimension*components] change of u over a period, axis by axis. Default: 0 */
