@@ -224,6 +224,8 @@ refused plane.yaml flat 's/velocity.*}/jump: 1}/' "a jump is one along an axis, 
 refused plane.yaml one 's/velocity.*}/velocity: 1}/' 'where a vector of 2 is needed' 9:40
 refused plane.yaml graded 's/velocity.*}/monitor: 1}/' 'a monitor, which fields of one' 9:9
 refused plane.yaml flow 's/^boundary.*/boundary: {left: {free: 1}}/' 'flux, a rate or robin' 7:11
+refused plane.yaml outside 's/^boundary.*/boundary: fixed/;s/there, there/1, 9/;s/velocity.*/}/' \
+  "the probe 'crest': moving: the point (1, 9) is outside of the mesh" 11:3
 refused plane.yaml slow 's/velocity.*}/slide: 3}/' 'slide is yes or no' 9:37
 
 # ends that are moved, straight over each step: the error at nodes is 4.28e-5, which is 6.09e-4 if

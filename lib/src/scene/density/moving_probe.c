@@ -3,8 +3,8 @@
 #include "scene/density/moving.h"
 #include "text/heap.h"
 
-bool dvi__moving_check_probe(dvi_scene *scene, const dvi__local *function, const char *name,
-                             dvi__span span)
+bool dvi__moving_check_probe(dvi_scene *scene, const dvi__local *function, const double *x,
+                             const char *name, dvi__span span)
 {
   for (int k = 0; k < function->variables; k++) {
     const dvi_jet *jet = function->variable + k;
@@ -17,7 +17,12 @@ bool dvi__moving_check_probe(dvi_scene *scene, const dvi__local *function, const
     if (jet->rate && scene->density->is_static)
       return dvi__scene_refuse(scene, span, "nothing moves here, and '%s' has a rate", name);
   }
-  return true;
+  double u[DVI_MOVING_COMPONENTS_MAX];
+  const dvi_status status = x == NULL ? DVI_OK
+                                      : dvi_moving_evaluate(scene->density->moving->made, 0,
+                                                            scene->q, 0, 1, x, u);
+  return status == DVI_OK || dvi__complain(scene->complaint, status, span, "the probe '%s': %s",
+                                           name, dvi_last_error());
 }
 
 /* A function without variables and terms is 0. */

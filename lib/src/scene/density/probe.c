@@ -198,7 +198,8 @@ static bool try_probe(dvi_scene *scene, struct dvi__density_probe *probe)
 {
   const struct dvi__scene_density *s = scene->density;
   if (s->moving != NULL)
-    return dvi__moving_check_probe(scene, probe->function, probe->name, probe->span);
+    return dvi__moving_check_probe(scene, probe->function, probe->is_integral ? NULL : probe->point,
+                                   probe->name, probe->span);
   const int none[DVI_AXES_MAX] = {0};
   double *U = dvi__heap_take((size_t)s->functions, sizeof *U), value;
   if (U == NULL) return dvi__scene_no_memory(scene);

@@ -218,9 +218,10 @@ bool dvi__moving_make(dvi_scene *scene);
 void dvi__moving_clear(dvi_scene *scene);
 void dvi__moving_explain(const dvi_scene *scene, char *text, size_t size);
 
-/* Refuse what a probe of such a field has not. */
-bool dvi__moving_check_probe(dvi_scene *scene, const dvi__local *function, const char *name,
-                             dvi__span span);
+/* Refuse what a probe of such a field has not, and a point x, unless it is NULL, that is outside at
+ * the start. */
+bool dvi__moving_check_probe(dvi_scene *scene, const dvi__local *function, const double *x,
+                             const char *name, dvi__span span);
 
 /* Evaluate a function of the field, its slopes and its rate at a point x, or its integral if x is
  * NULL. Returns as callbacks do. */
