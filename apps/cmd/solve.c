@@ -11,6 +11,7 @@
 #include "csv/table.h"
 #include "load/density.h"
 #include "load/field.h"
+#include "load/moving.h"
 #include "load/open.h"
 #include "load/scene.h"
 
@@ -242,32 +243,18 @@ static dvi_status print_probes(FILE *stream, const problem *scene, const double 
   return DVI_OK;
 }
 
-/* Write the positions and values of all nodes. */
-static int write_nodes(const char *path, const problem *scene, const dvi_moving *moving,
-                       const double *q)
+/* Write the nodes with their values to the files that are asked for. */
+static int write_nodes(const solve_request *r, const problem *scene, const double *q)
 {
-  enum { MOST = DVI_MOVING_COMPONENTS_MAX };
-  int cells, components = 0;
-  (void)dvi_moving_nodes(moving, &cells);
-  table_column column[MOST + 2] = {{"x", ""}};
-  for (const char *name;
-       components < MOST && (name = dvi_scene_component(scene->scene, components)) != NULL;
-       components++)
-    column[1 + components] = (table_column){name, ""};
-  const size_t nodes = (size_t)cells + 1;
-  double *x = calloc(nodes * (size_t)(1 + components), sizeof *x);
-  if (x == NULL) {
-    complain("out of memory");
-    return FAILED;
+  moving_views views;
+  int code = moving_views_make(scene, 0, q, &views);
+  if (code == DONE && r->csv != NULL) code = moving_write(scene, r->csv, &views);
+  if (code == DONE && r->vtu != NULL) {
+    const dvi_status status = dvi_mesh_write(views.mesh, r->vtu, views.count, views.view);
+    if (status != DVI_OK) code = library_error(status);
   }
-  result_table *rows = table_create(column);
-  const dvi_status status = dvi_moving_lift(moving, 0, q, x, x + nodes);
-  for (size_t i = 0; i < nodes; i++)
-    for (int k = 0; k <= components; k++) table_number(rows, x[(size_t)k * nodes + i]);
-  const bool good = status == DVI_OK && table_good(rows) && table_write(rows, path);
-  table_destroy(&rows);
-  free(x);
-  return good ? DONE : status != DVI_OK ? library_error(status) : FAILED;
+  moving_views_clear(&views);
+  return code;
 }
 
 static int solve_moving(const solve_request *r, const problem *scene, const dvi_moving *moving)
@@ -293,7 +280,7 @@ static int solve_moving(const solve_request *r, const problem *scene, const dvi_
     status = print_probes(stream, scene, q);
   }
   int code = status == DVI_OK ? DONE : library_error(status);
-  if (code == DONE && r->csv != NULL) code = write_nodes(r->csv, scene, moving, q);
+  if (code == DONE && (r->csv != NULL || r->vtu != NULL)) code = write_nodes(r, scene, q);
   free(q);
   return code;
 }
@@ -312,7 +299,7 @@ static const char *const details[] = {
     "'solve: ground' it is the ground state of the section schroedinger, of norm 1 or that of "
     "'solve: {ground: NORM}': mu is its chemical potential. On a mesh that "
     "moves ('moving') nodes and values are found together, energy and barrier are those of the "
-    "action, and --csv has the nodes.\n",
+    "action, and the files have the nodes.\n",
     "Columns of --csv: vertex, its coordinates, u. Of a density: the position of the vertices, and "
     "the value of each component and of |psi|^2 of a complex field.\n",
     "Examples:\n"
@@ -361,8 +348,7 @@ int solve_command(int argc, char **argv)
   code = open_any(name, &r.settings, &scene);
   if (code != DONE) return code;
   if (dvi_scene_moving(scene->scene) != NULL) {
-    code = r.vtu == NULL ? solve_moving(&r, scene, dvi_scene_moving(scene->scene))
-                         : usage_error("solve: --vtu is for meshes at rest; --csv has the nodes");
+    code = solve_moving(&r, scene, dvi_scene_moving(scene->scene));
     problem_destroy(&scene);
     return code;
   }

@@ -15,6 +15,10 @@
 /* A judge that is off by more than this multiple of its own error is contradicted. */
 static const double contradiction = 10.0;
 
+/* With many coordinates IDA stops after fewer steps, as those that it takes where the rounding of
+ * the equations is above its tolerance. The runs judge then. */
+enum { MANY_COORDINATES = 64, STEPS_OF_COORDINATES = 2000000 };
+
 static const char *const kinds[] = {[JUDGE_AUTO] = "auto",
                                     [JUDGE_EXACT] = "exact",
                                     [JUDGE_STORED] = "stored",
@@ -69,12 +73,15 @@ static bool ask_digits(judgement *judge, const problem *scene, double t_end)
   return true;
 }
 
-static dvi_status ask_ida(judgement *judge, const problem *scene, double t_end, double *p)
+/* Ask IDA, with so many steps at most, or as many as the library allows if these are 0. */
+static dvi_status ask_ida(judgement *judge, const problem *scene, double t_end, long most,
+                          double *p)
 {
   memcpy(judge->q, scene->q, (size_t)scene->nq * sizeof *judge->q);
   memcpy(p, scene->p, (size_t)scene->nv * sizeof *p);
   dvi_reference_report report;
-  const dvi_status status = dvi_reference_judge(scene->system, 0.0, t_end, judge->q, p, NULL,
+  const dvi_reference_options options = {.max_steps = most};
+  const dvi_status status = dvi_reference_judge(scene->system, 0.0, t_end, judge->q, p, &options,
                                                 &report);
   if (status != DVI_OK) return status;
   set_words(judge, "IDA, run at two tolerances");
@@ -99,7 +106,8 @@ static dvi_status ask_ida_then_runs(judgement *judge, const problem *scene, doub
                                     const judge_request *request, double *p, double *ida)
 {
   const int n = scene->nq;
-  const dvi_status of_ida = ask_ida(judge, scene, t_end, p);
+  const long most = n < MANY_COORDINATES ? 0 : STEPS_OF_COORDINATES / n;
+  const dvi_status of_ida = ask_ida(judge, scene, t_end, most, p);
   if (of_ida == DVI_OK && judge->error <= request->wanted) return of_ida;
   const double ida_error = judge->error;
   memcpy(ida, judge->q, (size_t)n * sizeof *ida);
@@ -141,7 +149,7 @@ static int judge_ask(judgement *judge, const problem *scene, double t_end,
   if (kind == JUDGE_RUNS)
     status = judge_by_runs(judge, scene, t_end, request->progress);
   else if (kind == JUDGE_IDA)
-    status = ask_ida(judge, scene, t_end, p);
+    status = ask_ida(judge, scene, t_end, 0, p);
   else
     status = ask_ida_then_runs(judge, scene, t_end, request, p, ida);
   if (status == DVI_OK) return DONE;

@@ -66,6 +66,7 @@ static int start_density(field_map *m, const dvi_density *density, const char *n
 /* Places rest between the ends of the start. Nodes pass them. */
 static int start_moving(field_map *m, const char *name)
 {
+  if (dvi_scene_axis(m->scene->scene, 1) != NULL) return refuse(m->scene, "is in a plane");
   const int code = quantity_choose(m->scene, "run: --map-of", name, &m->shown);
   if (code != DONE) return code;
   if (m->shown.order[0] > 1)

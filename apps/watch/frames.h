@@ -6,8 +6,8 @@
 
 /** The files so far. All zero without any. */
 typedef struct frame_list {
-  const dvi_mesh *mesh;
-  const char *path; /**< of the list of files, FILE.pvd */
+  const dvi_mesh *mesh; /**< of all files, or of the next one */
+  const char *path;     /**< of the list of files, FILE.pvd */
   int count, room;
   double *time; /**< [count] */
   char **name;  /**< [count] FILE_000000.vtu and so on, without folder */

@@ -15,6 +15,7 @@
 #include "cli/file.h"
 #include "load/density.h"
 #include "load/field.h"
+#include "load/moving.h"
 #include "watch/field_map.h"
 #include "watch/frames.h"
 #include "watch/run_end.h"
@@ -62,12 +63,25 @@ static bool recorder_write_components(recorder *r, const dvi_integrator *integra
          frames_add(&r->frames, t, r->views.count, r->views.view);
 }
 
+/* Write the field on a mesh that moves, with the nodes where they are. */
+static bool recorder_write_nodes(recorder *r, const dvi_integrator *integrator)
+{
+  const double t = dvi_integrator_time(integrator);
+  moving_views now;
+  bool good = moving_views_make(r->scene, t, dvi_integrator_q(integrator), &now) == DONE;
+  r->frames.mesh = now.mesh;
+  good = good && frames_add(&r->frames, t, now.count, now.view);
+  moving_views_clear(&now);
+  return good;
+}
+
 /* Write the field of a state, in its cells if it is Maxwell's. */
 static bool recorder_write_frame(recorder *r, const dvi_integrator *integrator)
 {
   const double t = dvi_integrator_time(integrator);
   if (!frames_are_wanted(&r->frames)) return true;
   if (density_of(r->scene) != NULL) return recorder_write_components(r, integrator);
+  if (dvi_scene_moving(r->scene->scene) != NULL) return recorder_write_nodes(r, integrator);
   field_view view;
   (void)dvi_field_lift(r->field, dvi_integrator_q(integrator), r->form);
   const bool good = field_view_make(r->field, dvi_field_degree(r->field) == 0 ? "u" : "A", r->form,
@@ -277,13 +291,8 @@ static int recorder_start_frames(recorder *r)
   const dvi_density *density = density_of(r->scene);
   r->field = dvi_scene_field(r->scene->scene);
   const dvi_mesh *mesh = dvi_scene_mesh(r->scene->scene);
-  if (dvi_scene_moving(r->scene->scene) != NULL)
-    return usage_error(
-        "run: --pvd is for meshes at rest, and the nodes of %s move; --map draws the "
-        "field over space and time, and rows have nodes, values and probes",
-        r->scene->name);
   const int code = frames_start(&r->frames, r->scene->name, mesh, r->request->pvd);
-  if (code != DONE) return code;
+  if (code != DONE || dvi_scene_moving(r->scene->scene) != NULL) return code;
   const int64_t numbers = density != NULL ? density_coefficients(density)
                                           : dvi_mesh_count(mesh, dvi_field_degree(r->field));
   r->form = calloc((size_t)numbers, sizeof *r->form);

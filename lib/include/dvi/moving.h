@@ -91,8 +91,8 @@ typedef struct dvi_moving_terms {
   double stretch; /**< of DVI_MOVING_EQUAL, at least 0 */
   double mu;      /**< mass of a node, at least 0. Needed where u is straight */
   double kappa;   /**< stiffness of the cells, at least 0 */
-  /** A monitor m(x) > 0 [count], whose integral is the same in all cells of reference. Default:
-   *  equal cells */
+  /** A monitor m(x) > 0 [count], whose integral is the same in all cells of reference. It is
+   *  sampled at 16384 points or more, until its integral settles. Default: equal cells */
   int (*monitor)(int64_t count, const double *x, double *m, void *user);
   dvi_moving_end left, right; /**< without periodic ends */
   /** [dimension*components] change of u over a period, axis by axis. Default: 0 */
@@ -149,6 +149,12 @@ void dvi_moving_destroy(dvi_moving **moving);
  *  `cells` may be NULL. NULL and 0 for NULL. */
 const double *dvi_moving_nodes(const dvi_moving *moving, int *cells);
 
+/** Return the coordinate of each number of a node, or -1 for what is no unknown:
+ *  [nodes*(dimension+components)], node by node, first the position and then the values. Owned by
+ *  the field. `nodes`, which may be NULL, is their number without the periodic last one of an axis.
+ *  NULL and 0 for NULL. */
+const int *dvi_moving_unknowns(const dvi_moving *moving, int *nodes);
+
 /** Create the mechanical system of the field, a general Lagrangian. Its coordinates are, node by
  *  node, the coordinates of its position that are unknowns, and the components that the boundary
  *  leaves free. Periodic ends have the last node in common with the first one.
@@ -156,9 +162,7 @@ const double *dvi_moving_nodes(const dvi_moving *moving, int *cells);
  *  Symmetries are "momentum_x" and "momentum_y", translations of all nodes with their values, and
  *  "momentum_u" or "momentum_u1" and so on, if the density allows them and all nodes have the
  *  unknown. A mesh on which a cell has no volume makes the step fail wherever the method evaluates
- *  L, and dvi_last_error() names the cell then. The method midpoint does so in the middle of steps
- *  alone: if nodes have passed each other at the end of a step, the next step fails, and what is
- *  evaluated there.
+ *  L, and at its end, and dvi_last_error() names the cell then.
  *
  *  @param[out] system  owned by the caller, for dvi_system_destroy before the field's end
  *  @retval DVI_SINGULAR  a component has no rate in the density
@@ -213,6 +217,29 @@ dvi_status dvi_moving_lift(const dvi_moving *moving, double t, const double *q, 
  *  @retval (others)          as the path fails */
 dvi_status dvi_moving_evaluate(const dvi_moving *moving, double t, const double *q, int slope,
                                int64_t count, const double *x, double *u);
+
+/** Evaluate a function of the field at a point x [dimension], or integrate it over all cells, by 8
+ *  Gauss points a cell or 6 points a triangle, if x is NULL. A rate is that at a place, u' - grad u
+ *  . x' with the velocities of the nodes.
+ *
+ *  @param v         velocities, NULL if the function has no rates
+ *  @param function  its variables and its density, which is read without derivatives. Nothing else
+ *                   is read
+ *  @retval DVI_BAD_ARGUMENT     a variable is not as described in dvi_moving_terms, the point lies
+ *                               outside, or a cell has no volume
+ *  @retval DVI_CALLBACK_FAILED  the function failed
+ *  @retval DVI_NO_MEMORY        there is no memory
+ *  @retval (others)             as dvi_moving_evaluate */
+dvi_status dvi_moving_measure(const dvi_moving *moving, double t, const double *q, const double *v,
+                              const dvi_density_part *function, const double *x, double *value);
+
+/** Create the mesh whose points are the nodes of coordinates q at time t, such as to write them
+ *  with values. Its cells are those of reference, and its vertices the nodes of dvi_moving_nodes.
+ *
+ *  @param[out] mesh  owned by the caller, for dvi_mesh_destroy. NULL after a failure
+ *  @retval DVI_BAD_ARGUMENT  a cell has no volume
+ *  @retval (others)          as dvi_mesh_create */
+dvi_status dvi_moving_mesh(const dvi_moving *moving, double t, const double *q, dvi_mesh **mesh);
 
 /** Find a static state of least energy near q, at time 0, with nodes and values free as in motion,
  *  by damped Newton steps. kappa is lowered to its value by factors of ten, from the mean of the

@@ -243,8 +243,9 @@ dvi_status dvi_scene_march_state(const dvi_scene *scene, const dvi_march *march,
 dvi_status dvi_scene_vectors(const dvi_scene *scene, const dvi_march *march, dvi_march_form form,
                              double *vector);
 
-/** Return the mesh of a scene of fields, owned by the scene. That of a grid for yee, and that of a
- *  domain (dvi_space_mesh), which do without, are made by the first call. NULL without a mesh, or
+/** Return the mesh of a scene of fields, owned by the scene. That of a grid for yee, that of a
+ *  domain (dvi_space_mesh), which do without, and the start of one that moves (dvi_moving_mesh) are
+ *  made by the first call. NULL without a mesh, or
  *  without memory. */
 const dvi_mesh *dvi_scene_mesh(dvi_scene *scene);
 

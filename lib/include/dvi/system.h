@@ -72,8 +72,7 @@ typedef struct dvi_lagrangian {
   int (*gradient)(double t, const double *q, const double *v, double *L_q, double *L_v, void *user);
   int (*gradient_batch)(int count, const double *t, const double *q, const double *v, double *L_q,
                         double *L_v, void *user);
-  /** Second derivatives in the order of the patterns qq, qv (row q, column v) and vv. Default:
-   *  differences of the gradient. */
+  /** In the order of the patterns qq, qv (row q, column v) and vv. Default: differences. */
   int (*hessian)(double t, const double *q, const double *v, double *L_qq, double *L_qv,
                  double *L_vv, void *user);
   int (*hessian_batch)(int count, const double *t, const double *q, const double *v, double *L_qq,
@@ -85,12 +84,13 @@ typedef struct dvi_lagrangian {
   int (*rate)(double t, const double *q, const double *v, double *L_t, void *user);
   int (*rate_batch)(int count, const double *t, const double *q, const double *v, double *L_t,
                     void *user);
-  /** Taylor coefficients along a curve, as in dvi_potential. v has its own coefficients
-   *  [(degree+1)*n], which need not be those of q's rate. L is [degree+1], L_q and L_v are
-   *  [(degree+1)*n], L_qq, L_qv and L_vv are [(degree+1)*entries of the pattern]. Each may be
-   *  NULL. */
+  /** Taylor coefficients along a curve, as in dvi_potential. v has its own [(degree+1)*n], which
+   *  need not be those of q's rate. L is [degree+1], L_q and L_v are [(degree+1)*n], L_qq, L_qv and
+   *  L_vv are [(degree+1)*entries of the pattern]. Each may be NULL. */
   int (*taylor)(int degree, const double *t, const double *q, const double *v, double *L,
                 double *L_q, double *L_v, double *L_qq, double *L_qv, double *L_vv, void *user);
+  /** Whether L is defined at q, asked once a step, at its end. Default: everywhere. */
+  int (*admit)(double t, const double *q, void *user);
 } dvi_lagrangian;
 
 /** A one-form alpha(q), for degenerate Lagrangians alpha(q).v - H, such as magnetic field lines,

@@ -199,8 +199,9 @@ static dvi_status check_state(const dvi_integrator *I)
     return dvi__fail(DVI_BAD_ARGUMENT,
                      "monitor %s is so small that the step does not move the time",
                      I->monitored->name);
-  if (isfinite(I->next.t) && dvi__first_not_finite(2 * n, I->next.q) < 0) return DVI_OK;
-  return dvi__fail(DVI_NOT_FINITE, "the new state is not finite");
+  if (!isfinite(I->next.t) || dvi__first_not_finite(2 * n, I->next.q) >= 0)
+    return dvi__fail(DVI_NOT_FINITE, "the new state is not finite");
+  return dvi__lagrangian_admit(I->evaluator, I->next.t, I->next.q);
 }
 
 static void accept_step(dvi_integrator *I, double h)

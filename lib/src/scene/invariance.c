@@ -268,7 +268,7 @@ static void report_symmetry(search *s, const char *what, int count,
 static void turn_component(search *s, const dvi__coordinate *x, int from, int to)
 {
   for (int i = 0; i < x->size; i++) {
-    const int first = x->q.first + i * x->q.stride;
+    const int first = dvi__slots_at(&x->q, i);
     s->to[first + from] = from == to ? s->scene->n + 1 : first + to + 1;
     if (from != to) s->to[first + to] = -(first + from + 1);
   }

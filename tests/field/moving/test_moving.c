@@ -284,6 +284,30 @@ START_TEST(monitor_has_one_integral_in_all_cells)
 }
 END_TEST
 
+/* A peak of the width 1e-4 has sqrt(pi)/(1 + sqrt(pi)), 0.639, of the integral. */
+static int needle(int64_t count, const double *x, double *m, void *user)
+{
+  (void)user;
+  for (int64_t k = 0; k < count; k++) m[k] = 1 + 1e4 * exp(-pow((x[k] - 0.4321) / 1e-4, 2));
+  return 0;
+}
+
+START_TEST(monitor_has_a_narrow_peak)
+{
+  dvi_moving *moving = create(&(dvi_moving_terms){.size = sizeof(dvi_moving_terms),
+                                                  .axis = {.to = 1},
+                                                  .cells = 100,
+                                                  .part = &free_wave,
+                                                  .translations = 1,
+                                                  .monitor = needle});
+  const double *node = dvi_moving_nodes(moving, NULL);
+  int inside = 0;
+  for (int k = 0; k <= 100; k++) inside += fabs(node[k] - 0.4321) < 4e-4;
+  ck_assert(inside == 63 || inside == 64);
+  dvi_moving_destroy(&moving);
+}
+END_TEST
+
 /* ---- bad input ---- */
 
 static int negative_monitor(int64_t count, const double *x, double *m, void *user)
@@ -540,6 +564,7 @@ SUITE(moving)
   tcase_add_test(tests, lift_undoes_start);
   tcase_add_test(tests, periodic_fields_repeat_with_their_jump);
   tcase_add_test(tests, monitor_has_one_integral_in_all_cells);
+  tcase_add_test(tests, monitor_has_a_narrow_peak);
   tcase_add_test(tests, bad_meshes_are_refused);
   tcase_add_test(tests, bad_masses_and_ends_are_refused);
   tcase_add_test(tests, bad_densities_are_refused);

@@ -15,7 +15,6 @@ enum {
   LANES = 64, /* points of a call of the density */
   AXES = DVI_MOVING_AXES_MAX,
   ENTRIES = 2 * DVI__CELL_NODES * (AXES + 1), /* numbers on which a variable depends */
-  CELL_NUMBERS = 2 * DVI__CELL_NODES * DVI__NODE_NUMBERS,
   POSITION_PAIRS = AXES * (AXES + 1) / 2
 };
 
@@ -25,14 +24,7 @@ typedef struct slope {
   int count, at[ENTRIES];
 } slope;
 
-/* A cell, its numbers and rates, and the gradients of its components. */
-typedef struct element {
-  const dvi_moving *m;
-  int nodes, rates; /* place of the rates */
-  double y[CELL_NUMBERS];
-  dvi__simplex simplex;
-  double gradient[DVI_MOVING_COMPONENTS_MAX][AXES];
-} element;
+typedef dvi__moving_element element;
 
 /* The density at the points of some cells, each array variable by variable. */
 typedef struct lanes {
@@ -80,8 +72,7 @@ static double dot(const element *e, const double *a, const double *b)
 
 /* ---- variables ---- */
 
-/* Give a number of node 0, or its rate, at a point of the cell. */
-static double between(const element *e, const double *place, int number)
+double dvi__moving_between(const element *e, const double *place, int number)
 {
   double sum = 0;
   for (int a = 0; a < e->nodes; a++) sum += place[a] * e->y[a * e->m->numbers + number];
@@ -91,7 +82,7 @@ static double between(const element *e, const double *place, int number)
 /* Give the negative velocity of the mesh at a point. */
 static void find_wind(const element *e, const double *place, double *wind)
 {
-  for (int i = 0; i < e->m->dimension; i++) wind[i] = -between(e, place, e->rates + i);
+  for (int i = 0; i < e->m->dimension; i++) wind[i] = -dvi__moving_between(e, place, e->rates + i);
 }
 
 /* Tell along which axis a variable is a derivative, or -1. */
@@ -100,14 +91,15 @@ static int axis_of(const dvi_jet *jet)
   return jet->order[0] > 0 ? 0 : jet->order[1] > 0 ? 1 : -1;
 }
 
-static double value_of(const element *e, const double *place, const dvi_jet *jet)
+double dvi__moving_variable(const element *e, const double *place, const dvi_jet *jet)
 {
   const int number = value_at(e, 0, jet->component);
   double wind[AXES];
   if (!jet->rate && axis_of(jet) >= 0) return e->gradient[jet->component][axis_of(jet)];
-  if (!jet->rate) return between(e, place, number);
+  if (!jet->rate) return dvi__moving_between(e, place, number);
   find_wind(e, place, wind);
-  return between(e, place, e->rates + number) + dot(e, wind, e->gradient[jet->component]);
+  return dvi__moving_between(e, place, e->rates + number) +
+         dot(e, wind, e->gradient[jet->component]);
 }
 
 /* ---- first derivatives of variables ---- */
@@ -205,22 +197,31 @@ static void bend_variable(const element *e, const double *place, const dvi_jet *
 
 /* ---- the density. `order` is that of the highest derivatives that are wanted ---- */
 
+int dvi__moving_element_at(const dvi_moving *m, const dvi__moving_state *state, int cell,
+                           element *e)
+{
+  *e = (element){.m = m, .nodes = m->cell.nodes, .rates = m->cell.nodes * m->numbers};
+  const dvi__corner *corner = m->cell.corner + (size_t)cell * (size_t)e->nodes;
+  const int returned = dvi__moving_gather(m, state, corner, e->nodes, e->y);
+  if (returned != 0) return returned;
+  e->simplex = dvi__moving_simplex(m, e->y);
+  find_gradients(e);
+  return 0;
+}
+
 static int gather(const dvi_moving *m, const dvi__moving_state *state, int cell, lanes *w)
 {
   w->count = w->cells * m->points;
   for (int c = 0; c < w->cells; c++) {
     element *e = &w->cell[c];
-    *e = (element){.m = m, .nodes = m->cell.nodes, .rates = m->cell.nodes * m->numbers};
-    const dvi__corner *corner = m->cell.corner + (size_t)(cell + c) * (size_t)e->nodes;
-    const int returned = dvi__moving_gather(m, state, corner, e->nodes, e->y);
+    const int returned = dvi__moving_element_at(m, state, cell + c, e);
     if (returned != 0) return returned;
-    e->simplex = dvi__moving_simplex(m, e->y);
-    find_gradients(e);
     for (int k = 0; k < m->points; k++) {
       const int lane = c * m->points + k;
-      for (int i = 0; i < m->dimension; i++) w->x[i * w->count + lane] = between(e, m->place[k], i);
+      for (int i = 0; i < m->dimension; i++)
+        w->x[i * w->count + lane] = dvi__moving_between(e, m->place[k], i);
       for (int j = 0; j < m->part.variables; j++)
-        w->z[j * w->count + lane] = value_of(e, m->place[k], &m->part.variable[j]);
+        w->z[j * w->count + lane] = dvi__moving_variable(e, m->place[k], &m->part.variable[j]);
     }
   }
   return 0;

@@ -105,3 +105,9 @@ const double *dvi_moving_nodes(const dvi_moving *moving, int *cells)
   if (cells != NULL) *cells = moving != NULL ? moving->cells : 0;
   return moving != NULL ? moving->node : NULL;
 }
+
+const int *dvi_moving_unknowns(const dvi_moving *moving, int *nodes)
+{
+  if (nodes != NULL) *nodes = moving != NULL ? moving->nodes : 0;
+  return moving != NULL ? moving->unknown : NULL;
+}

@@ -53,31 +53,12 @@ static void find_on_axis(const dvi_moving *m, const double *node, int64_t count,
   }
 }
 
-/* Make the mesh whose points are the nodes as they are. Its triangles are those of reference. */
-static dvi_status make_mesh(const dvi_moving *m, const double *node, dvi_mesh **mesh)
-{
-  int width;
-  double *point = DVI_NEW(double, 2 * (size_t)m->nodes);
-  if (point == NULL) return dvi__fail(DVI_NO_MEMORY, "moving: no memory for a mesh");
-  for (int k = 0; k < 2 * m->nodes; k++) point[k] = node[k % 2 * m->nodes + k / 2];
-  const dvi_mesh_terms terms = {.size = sizeof terms,
-                                .dimension = 2,
-                                .points = m->nodes,
-                                .point = point,
-                                .cells = m->cells,
-                                .vertex = dvi_mesh_vertices(m->mesh, 2, &width),
-                                .period = m->period};
-  const dvi_status status = dvi_mesh_create(&terms, mesh);
-  dvi__release(point);
-  return status;
-}
-
 static dvi_status find_in_plane(const dvi_moving *m, const double *node, int64_t count,
                                 const double *x, int *cell)
 {
   dvi_mesh *mesh = NULL;
   double *point = DVI_NEW(double, 5 * (size_t)count);
-  dvi_status status = point != NULL ? make_mesh(m, node, &mesh) : DVI_NO_MEMORY;
+  dvi_status status = point != NULL ? dvi__moving_mesh_of(m, node, &mesh) : DVI_NO_MEMORY;
   for (int64_t k = 0; k < 2 * count && status == DVI_OK; k++) point[k] = x[k % 2 * count + k / 2];
   if (status == DVI_OK) status = dvi_mesh_locate(mesh, count, point, cell, point + 2 * count);
   dvi_mesh_destroy(&mesh);
@@ -85,36 +66,16 @@ static dvi_status find_in_plane(const dvi_moving *m, const double *node, int64_t
   return point != NULL ? status : dvi__fail(DVI_NO_MEMORY, "moving: no memory for points");
 }
 
-/* ---- values there ---- */
-
-static void evaluate_at(const dvi_moving *m, const double *y, int slope, int64_t stride,
-                        const double *x, double *u)
+dvi_status dvi__moving_find_cells(const dvi_moving *m, const double *node, int64_t count,
+                                  const double *x, int *cell)
 {
-  const dvi__simplex simplex = dvi__moving_simplex(m, y);
-  double turn[DVI_MOVING_AXES_MAX], place[DVI__CELL_NODES];
-  for (int i = 0; i < m->dimension; i++) {
-    double middle = 0;
-    for (int a = 0; a <= m->dimension; a++) middle += y[a * m->numbers + i] / (m->dimension + 1);
-    turn[i] = m->period[i] > 0 ? round((x[i * stride] - middle) / m->period[i]) : 0;
-  }
-  for (int a = 0; a <= m->dimension; a++) {
-    place[a] = a == 0;
-    for (int i = 0; i < m->dimension; i++)
-      place[a] += simplex.gradient[a][i] * (x[i * stride] - turn[i] * m->period[i] - y[i]);
-  }
-  for (int c = 0; c < m->components; c++) {
-    double sum = 0;
-    for (int a = 0; a <= m->dimension; a++)
-      sum += (slope ? simplex.gradient[a][slope - 1] : place[a]) *
-             y[a * m->numbers + m->dimension + c];
-    for (int i = 0; i < m->dimension && !slope; i++)
-      sum += turn[i] * m->jump[i * m->components + c];
-    u[c * stride] = sum;
-  }
+  if (m->dimension == 2) return find_in_plane(m, node, count, x, cell);
+  find_on_axis(m, node, count, x, cell);
+  return DVI_OK;
 }
 
-static dvi_status refuse_point(const dvi_moving *m, const double *node, const double *x,
-                               int64_t stride)
+dvi_status dvi__moving_refuse_point(const dvi_moving *m, const double *node, const double *x,
+                                    int64_t stride)
 {
   if (m->dimension == 1)
     return dvi__fail(DVI_BAD_ARGUMENT, "moving: the point x = %.6g is outside of %.6g to %.6g", *x,
@@ -123,21 +84,49 @@ static dvi_status refuse_point(const dvi_moving *m, const double *node, const do
                    x[stride]);
 }
 
+/* ---- values there ---- */
+
+void dvi__moving_place(const dvi__moving_element *e, int64_t stride, const double *x, double *place,
+                       double *turn)
+{
+  const dvi_moving *m = e->m;
+  for (int i = 0; i < m->dimension; i++) {
+    double middle = 0;
+    for (int a = 0; a < e->nodes; a++) middle += e->y[a * m->numbers + i] / e->nodes;
+    turn[i] = m->period[i] > 0 ? round((x[i * stride] - middle) / m->period[i]) : 0;
+  }
+  for (int a = 0; a < e->nodes; a++) {
+    place[a] = a == 0;
+    for (int i = 0; i < m->dimension; i++)
+      place[a] += e->simplex.gradient[a][i] * (x[i * stride] - turn[i] * m->period[i] - e->y[i]);
+  }
+}
+
+static void evaluate_at(const dvi__moving_element *e, int slope, int64_t stride, const double *x,
+                        double *u)
+{
+  const dvi_moving *m = e->m;
+  double turn[DVI_MOVING_AXES_MAX], place[DVI__CELL_NODES];
+  dvi__moving_place(e, stride, x, place, turn);
+  for (int c = 0; c < m->components; c++) {
+    dvi_jet jet = {.component = c};
+    if (slope) jet.order[slope - 1] = 1;
+    u[c * stride] = dvi__moving_variable(e, place, &jet);
+    for (int i = 0; i < m->dimension && !slope; i++)
+      u[c * stride] += turn[i] * m->jump[i * m->components + c];
+  }
+}
+
 static dvi_status evaluate(const dvi_moving *m, const dvi__moving_state *state, const double *node,
                            int slope, int64_t count, const double *x, int *cell, double *u)
 {
-  if (m->dimension == 2)
-    DVI_TRY(find_in_plane(m, node, count, x, cell));
-  else
-    find_on_axis(m, node, count, x, cell);
+  DVI_TRY(dvi__moving_find_cells(m, node, count, x, cell));
   for (int64_t k = 0; k < count; k++) {
-    double y[2 * DVI__CELL_NODES * DVI__NODE_NUMBERS];
-    if (cell[k] < 0) return refuse_point(m, node, x + k, count);
-    const int nodes = m->cell.nodes,
-              returned = dvi__moving_gather(
-                  m, state, m->cell.corner + (size_t)cell[k] * (size_t)nodes, nodes, y);
+    dvi__moving_element e;
+    if (cell[k] < 0) return dvi__moving_refuse_point(m, node, x + k, count);
+    const int returned = dvi__moving_element_at(m, state, cell[k], &e);
     if (returned != 0) return dvi__moving_refuse(DVI_BAD_ARGUMENT, returned);
-    evaluate_at(m, y, slope, count, x + k, u + k);
+    evaluate_at(&e, slope, count, x + k, u + k);
   }
   return DVI_OK;
 }

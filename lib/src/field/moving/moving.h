@@ -104,6 +104,43 @@ double dvi__moving_volume(const dvi_moving *m, const double *y);
 /* Give the simplex of such a cell. */
 dvi__simplex dvi__moving_simplex(const dvi_moving *m, const double *y);
 
+/* A cell, its numbers and rates, and the gradients of its components. */
+typedef struct dvi__moving_element {
+  const dvi_moving *m;
+  int nodes, rates; /* place of the rates */
+  double y[2 * DVI__CELL_NODES * DVI__NODE_NUMBERS];
+  dvi__simplex simplex;
+  double gradient[DVI_MOVING_COMPONENTS_MAX][DVI_MOVING_AXES_MAX];
+} dvi__moving_element;
+
+/* Give a cell. Returns as dvi__moving_gather does. */
+int dvi__moving_element_at(const dvi_moving *m, const dvi__moving_state *state, int cell,
+                           dvi__moving_element *e);
+
+/* Give a number of node 0, or its rate, at a point of a cell, in barycentric coordinates. */
+double dvi__moving_between(const dvi__moving_element *e, const double *place, int number);
+
+/* Give a variable of a density there: u, u_t, u_x or u_y. */
+double dvi__moving_variable(const dvi__moving_element *e, const double *place, const dvi_jet *jet);
+
+/* Make the mesh whose points are nodes as they are [dimension*listed]. Its cells are those of
+ * reference. */
+dvi_status dvi__moving_mesh_of(const dvi_moving *m, const double *node, dvi_mesh **mesh);
+
+/* Find the cells of points [dimension*count] among nodes as they are now [dimension*listed], or -1
+ * for points outside. */
+dvi_status dvi__moving_find_cells(const dvi_moving *m, const double *node, int64_t count,
+                                  const double *x, int *cell);
+
+/* Give the barycentric coordinates of a point, whose axes are `stride` apart, in a cell, and how
+ * many periods away its image in the cell is. */
+void dvi__moving_place(const dvi__moving_element *e, int64_t stride, const double *x, double *place,
+                       double *turn);
+
+/* Complain of a point that is in no cell. */
+dvi_status dvi__moving_refuse_point(const dvi_moving *m, const double *node, const double *x,
+                                    int64_t stride);
+
 /* Give the corner for a node of an axis, counted on beyond its ends. */
 dvi__corner dvi__moving_corner(const dvi_moving *m, int node);
 
@@ -144,6 +181,9 @@ int dvi__moving_sum(const dvi_moving *m, const dvi__moving_state *state,
 
 /* Fail with the reason of a callback, by a status, or else with what it returned. */
 dvi_status dvi__moving_refuse(dvi_status status, int returned);
+
+/* Look for a cell that has no volume. Returns 1 with a reason then, or as the path does. */
+int dvi__moving_admit(const dvi_moving *m, const dvi__moving_state *state);
 
 /* Refuse a state on whose mesh a cell has no volume. DVI_BAD_ARGUMENT, or as the path fails. */
 dvi_status dvi__moving_check(const dvi_moving *m, const dvi__moving_state *state);

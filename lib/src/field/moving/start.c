@@ -18,15 +18,20 @@ dvi_status dvi__moving_refuse(dvi_status status, int returned)
                    "moving: a callback returned %d", returned);
 }
 
-dvi_status dvi__moving_check(const dvi_moving *m, const dvi__moving_state *state)
+int dvi__moving_admit(const dvi_moving *m, const dvi__moving_state *state)
 {
   double y[2 * DVI__CELL_NODES * DVI__NODE_NUMBERS];
-  for (int k = 0; k < m->cells; k++) {
-    const int returned = dvi__moving_gather(
-        m, state, m->cell.corner + (size_t)k * (size_t)m->cell.nodes, m->cell.nodes, y);
-    if (returned != 0) return dvi__moving_refuse(DVI_BAD_ARGUMENT, returned);
-  }
-  return DVI_OK;
+  int returned = 0;
+  for (int k = 0; k < m->cells && returned == 0; k++)
+    returned = dvi__moving_gather(m, state, m->cell.corner + (size_t)k * (size_t)m->cell.nodes,
+                                  m->cell.nodes, y);
+  return returned;
+}
+
+dvi_status dvi__moving_check(const dvi_moving *m, const dvi__moving_state *state)
+{
+  const int returned = dvi__moving_admit(m, state);
+  return returned == 0 ? DVI_OK : dvi__moving_refuse(DVI_BAD_ARGUMENT, returned);
 }
 
 static dvi_status check_finite(const dvi_moving *m, const double *q, const double *v)

@@ -25,6 +25,11 @@ static int hessian(double t, const double *q, const double *v, double *L_qq, dou
                          &(dvi__moving_sums){.L_qq = L_qq, .L_qv = L_qv, .L_vv = L_vv});
 }
 
+static int admit(double t, const double *q, void *user)
+{
+  return dvi__moving_admit(user, &(dvi__moving_state){.t = t, .q = q});
+}
+
 /* ---- symmetries ---- */
 
 static int translate(const double *q, double *xi, void *user)
@@ -97,6 +102,7 @@ static dvi_lagrangian lagrangian_of(dvi_moving *m)
   return (dvi_lagrangian){.value = value,
                           .gradient = gradient,
                           .hessian = hessian,
+                          .admit = admit,
                           .qq = pattern,
                           .qv = pattern,
                           .vv = pattern,

@@ -2,6 +2,7 @@
  *
  * A condition is fixed or free, perhaps with a value or a flux, which may depend on the time, or
  * {robin: a}. It is that of all fields, or a mapping by fields of such conditions. */
+#include <math.h>
 #include <string.h>
 
 #include "scene/density/scene_density.h"
@@ -18,15 +19,55 @@ typedef struct extent {
 
 /* ---- callbacks ---- */
 
-static int datum(int64_t count, double t, const double *x, double *value, void *user)
+/* Part of a time's length by which it may be off a multiple of it that is meant. */
+static const double same_time = 1e-6;
+
+/* Find the multiples of the length of straight pieces before and after a time. Returns whether the
+ * time lies between them, and is none of them, as all times are where a value is not straight. */
+static bool is_between(const dvi__local *local, double t, double ends[2])
 {
-  return dvi__local_value(user, count, t, x, value);
+  if (!(local->straight > 0)) return false;
+  const double count = floor(t / local->straight + same_time);
+  ends[0] = count * local->straight;
+  ends[1] = (count + 1) * local->straight;
+  return t - ends[0] > same_time * local->straight;
 }
 
+/* Evaluate point k at both ends. */
+static int evaluate_ends(const dvi__local *local, int64_t count, const double *x, int64_t k,
+                         const double ends[2], double value[2])
+{
+  double at[DVI_AXES_MAX];
+  for (int d = 0; d < local->dimension; d++) at[d] = x[d * count + k];
+  const int failed = dvi__local_value(local, 1, ends[0], at, value);
+  return failed != 0 ? failed : dvi__local_value(local, 1, ends[1], at, value + 1);
+}
+
+static int datum(int64_t count, double t, const double *x, double *value, void *user)
+{
+  double ends[2], at[2];
+  int failed = 0;
+  if (!is_between(user, t, ends)) return dvi__local_value(user, count, t, x, value);
+  for (int64_t k = 0; k < count && failed == 0; k++) {
+    failed = evaluate_ends(user, count, x, k, ends, at);
+    value[k] = at[0] + (t - ends[0]) / (ends[1] - ends[0]) * (at[1] - at[0]);
+  }
+  return failed;
+}
+
+/* At multiples the rate is that of the function itself. */
 static int datum_rate(int64_t count, double t, const double *x, double *rate, double *second,
                       void *user)
 {
-  return dvi__local_rates(user, count, t, x, rate, second);
+  double ends[2], at[2];
+  int failed = 0;
+  if (!is_between(user, t, ends)) return dvi__local_rates(user, count, t, x, rate, second);
+  for (int64_t k = 0; k < count && failed == 0; k++) {
+    failed = evaluate_ends(user, count, x, k, ends, at);
+    rate[k] = (at[1] - at[0]) / (ends[1] - ends[0]);
+    if (second != NULL) second[k] = 0;
+  }
+  return failed;
 }
 
 /* ---- conditions ---- */
@@ -60,16 +101,28 @@ static bool add_one(dvi_scene *scene, const extent *of, int component, dvi_condi
   return add_condition(scene, condition) != NULL;
 }
 
+/* Read the time between multiples of which a fixed value is straight. */
+static bool read_straight(dvi_scene *scene, const dvi__tree *tree, bool is_fixed, double *straight)
+{
+  if (!dvi__tree_number(scene, tree, "straight", straight)) return false;
+  return (is_fixed && *straight > 0) ||
+         dvi__scene_refuse(scene, tree->span,
+                           "straight is the time above 0 between multiples of which a fixed value "
+                           "is straight, as in '{fixed: sin(t), straight: 0.05}'");
+}
+
 /* Read {fixed: value}, {free: flux}, or {robin: a}, which may have a flux, too. */
 static bool read_data(dvi_scene *scene, const extent *of, const dvi__tree *tree)
 {
-  static const char *const known[] = {"fixed", "free", "robin"};
+  static const char *const known[] = {"fixed", "free", "robin", "straight"};
   dvi__local *local[DVI_COMPONENTS_MAX] = {NULL};
-  double robin = 0;
-  if (!dvi__want_keys(scene, tree, "a condition", 3, known)) return false;
+  double robin = 0, straight = 0;
+  if (!dvi__want_keys(scene, tree, "a condition", 4, known)) return false;
   const dvi__tree *fixed = dvi__tree_find(tree, "fixed"), *free = dvi__tree_find(tree, "free"),
-                  *of_value = dvi__tree_find(tree, "robin"), *given = fixed != NULL ? fixed : free;
-  if (tree->count == 0 || (fixed != NULL && tree->count > 1))
+                  *of_value = dvi__tree_find(tree, "robin"), *given = fixed != NULL ? fixed : free,
+                  *of_time = dvi__tree_find(tree, "straight");
+  if (of_time != NULL && !read_straight(scene, of_time, fixed != NULL, &straight)) return false;
+  if (tree->count == 0 || (fixed != NULL && tree->count > 1 + (of_time != NULL)))
     return dvi__scene_refuse(scene, tree->span,
                              "a condition is fixed, or free, perhaps with robin, as in "
                              "'{fixed: sin(t)}' or '{robin: 2}'");
@@ -78,9 +131,11 @@ static bool read_data(dvi_scene *scene, const extent *of, const dvi__tree *tree)
       !dvi__local_read(scene, given, DVI__MENTIONS_T, fixed != NULL ? "a fixed value" : "a flux",
                        of->components, local))
     return false;
-  for (int k = 0; k < of->components; k++)
+  for (int k = 0; k < of->components; k++) {
+    if (local[k] != NULL) local[k]->straight = straight;
     if (!add_one(scene, of, of->first + k, fixed != NULL ? DVI_FIXED : DVI_FREE, local[k], robin))
       return false;
+  }
   return true;
 }
 

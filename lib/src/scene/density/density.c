@@ -168,7 +168,8 @@ static bool name_unknowns(dvi_scene *scene, int64_t unknowns, const int *place)
   for (int i = 0; i < scene->coordinate_count; i++) {
     const dvi__declared_field *field = s->field + i;
     const int size = even ? field->components : 1, stride = even ? s->jets.components : 1;
-    const dvi__slots slots = {even ? field->first : 0, stride, size};
+    const dvi__slots slots = {
+        .first = even ? field->first : 0, .stride = stride, .components = size};
     x[i] = (dvi__coordinate){.name = field->name,
                              .span = field->span,
                              .kind = DVI__LINES,

@@ -66,6 +66,7 @@ static bool convert_input(dvi_scene *scene, dvi__local *local, const dvi__kernel
     local->has_place = true;
     *to = (dvi__kernel_input){.block = PLACE, .base = number};
   } else {
+    if (number < local->dimension) jet.component = -1 - number;
     *to = (dvi__kernel_input){.block = VARIABLES,
                               .base = find_variable(scene, local, &jet, span_of_input(kernel, i))};
     return to->base >= 0;

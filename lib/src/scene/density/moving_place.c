@@ -5,21 +5,27 @@
 
 #include "scene/density/moving.h"
 
-/* Points that are evaluated at a time, and the variables, u, u_t and u_x of each component and the
- * position. */
-enum { POINTS = 32, MOST = 3 * DVI_MOVING_COMPONENTS_MAX + 1, PAIRS = MOST * (MOST + 1) / 2 };
+/* Points that are evaluated at a time, and the variables, u, u_t, u_x and u_y of each component and
+ * the position. */
+enum {
+  AXES = DVI_MOVING_AXES_MAX,
+  POINTS = 32,
+  MOST = (2 + AXES) * DVI_MOVING_COMPONENTS_MAX + AXES,
+  PAIRS = MOST * (MOST + 1) / 2
+};
 
 /* Return the variable of the density without the position that is variable k of the one with it, or
- * -1 for the position. */
+ * -1 - i for the position along axis i. */
 static int same_variable(const dvi__scene_moving *m, int k)
 {
   const dvi_jet *of = m->placed->variable + k;
   for (int i = 0; i < m->whole->variables && of->component >= 0; i++) {
     const dvi_jet *jet = m->whole->variable + i;
-    if (jet->component == of->component && jet->rate == of->rate && jet->order[0] == of->order[0])
+    if (jet->component == of->component && jet->rate == of->rate && jet->order[0] == of->order[0] &&
+        jet->order[1] == of->order[1])
       return i;
   }
-  return -1;
+  return of->component;
 }
 
 /* Points `from` to from + some of all count. */
@@ -31,14 +37,27 @@ static void take(const dvi__scene_moving *m, part of, const double *x, const dou
 {
   for (int k = 0; k < m->placed->variables; k++) {
     const int i = same_variable(m, k);
-    const double *row = i < 0 ? x : z + (ptrdiff_t)i * of.count;
+    const double *row = i < 0 ? x + (ptrdiff_t)(-1 - i) * of.count : z + (ptrdiff_t)i * of.count;
     memcpy(to + (ptrdiff_t)k * of.some, row + of.from, (size_t)of.some * sizeof *to);
   }
 }
 
-static void put(part of, const double *row, double *to)
+/* Put a row where `row` rows of all points are, unless nothing is wanted. */
+static void put(part of, int row, const double *from, double *to)
 {
-  if (to != NULL) memcpy(to + of.from, row, (size_t)of.some * sizeof *to);
+  if (to != NULL)
+    memcpy(to + (ptrdiff_t)row * of.count + of.from, from, (size_t)of.some * sizeof *to);
+}
+
+/* Put the second derivatives by variables a and b of which one at least is a position. */
+static void put_second(const dvi__scene_moving *m, part of, int a, int b, const double *from,
+                       double *l_xz, double *l_xx)
+{
+  const int i = -1 - (a < 0 ? a : b), other = a < 0 ? b : a, j = -1 - other;
+  if (other >= 0)
+    put(of, i * m->whole->variables + other, from, l_xz);
+  else
+    put(of, i > j ? i * (i + 1) / 2 + j : j * (j + 1) / 2 + i, from, l_xx);
 }
 
 static int evaluate(const dvi__scene_moving *m, part of, double t, const double *x, const double *z,
@@ -48,29 +67,33 @@ static int evaluate(const dvi__scene_moving *m, part of, double t, const double 
   const dvi__local *placed = m->placed;
   take(m, of, x, z, all);
   const bool has_second = l_xz != NULL || l_xx != NULL;
-  const int failed = dvi__local_density(of.some, t, x, all, NULL, first, has_second ? second : NULL,
-                                        (void *)placed);
+  /* All of the position is among the variables. */
+  const int failed = dvi__local_density(of.some, t, NULL, all, NULL, first,
+                                        has_second ? second : NULL, (void *)placed);
   for (int k = 0; k < placed->variables && failed == 0; k++)
-    if (same_variable(m, k) < 0) put(of, first + (ptrdiff_t)k * of.some, l_x);
+    if (same_variable(m, k) < 0)
+      put(of, -1 - same_variable(m, k), first + (ptrdiff_t)k * of.some, l_x);
   for (int e = 0; e < placed->pairs && has_second && failed == 0; e++) {
     const int a = same_variable(m, placed->pair[e][0]), b = same_variable(m, placed->pair[e][1]);
-    const double *row = second + (ptrdiff_t)e * of.some;
-    if (a < 0 && b < 0)
-      put(of, row, l_xx);
-    else if ((a < 0 || b < 0) && l_xz != NULL)
-      put(of, row, l_xz + (ptrdiff_t)(a < 0 ? b : a) * of.count);
+    if (a < 0 || b < 0) put_second(m, of, a, b, second + (ptrdiff_t)e * of.some, l_xz, l_xx);
   }
   return failed;
+}
+
+static void clear(int count, double *to)
+{
+  if (to != NULL) memset(to, 0, (size_t)count * sizeof *to);
 }
 
 int dvi__moving_place_derivative(int count, double t, const double *x, const double *z, double *l_x,
                                  double *l_xz, double *l_xx, void *user)
 {
   const dvi__scene_moving *m = user;
+  const int axes = m->density->jets.dimension;
   int failed = 0;
-  if (l_x != NULL) memset(l_x, 0, (size_t)count * sizeof *l_x);
-  if (l_xz != NULL) memset(l_xz, 0, (size_t)(count * m->whole->variables) * sizeof *l_xz);
-  if (l_xx != NULL) memset(l_xx, 0, (size_t)count * sizeof *l_xx);
+  clear(axes * count, l_x);
+  clear(axes * m->whole->variables * count, l_xz);
+  clear(axes * (axes + 1) / 2 * count, l_xx);
   for (int from = 0; from < count && failed == 0; from += POINTS) {
     const part of = {count, from, count - from < POINTS ? count - from : POINTS};
     failed = evaluate(m, of, t, x, z, l_x, l_xz, l_xx);

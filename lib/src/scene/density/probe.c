@@ -187,10 +187,8 @@ static bool check_order(dvi_scene *scene, const dvi__local *f, int k)
 static int moving_value(double t, const double *q, const double *p, double *value, void *user)
 {
   const struct dvi__density_probe *probe = user;
-  (void)p;
-  return probe->is_integral
-             ? dvi__moving_integral(probe->scene, probe->function, t, q, value)
-             : dvi__moving_value(probe->scene, probe->function, t, q, probe->point[0], value);
+  return dvi__moving_value(probe->scene, probe->function, probe->has_rates, t, q, p,
+                           probe->is_integral ? NULL : probe->point, value);
 }
 
 /* A probe of a field of rotations. */
@@ -215,7 +213,8 @@ static bool try_probe(dvi_scene *scene, struct dvi__density_probe *probe)
 {
   const struct dvi__scene_density *s = scene->density;
   if (s->moving != NULL)
-    return dvi__moving_check_probe(scene, probe->function, probe->name, probe->span);
+    return dvi__moving_check_probe(scene, probe->function, probe->is_integral ? NULL : probe->point,
+                                   probe->name, probe->span);
   if (s->rotations != NULL) return try_turning(scene, probe);
   const int none[DVI_AXES_MAX] = {0};
   double *U = dvi__heap_take((size_t)s->functions, sizeof *U), value;

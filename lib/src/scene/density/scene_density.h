@@ -18,19 +18,20 @@ typedef struct dvi__local {
   dvi__scene_term *term;
   int dimension;
   bool has_time, has_place;
-  bool is_placed; /* the position along the first axis is a variable */
+  bool is_placed; /* the position is a variable */
   int variables;
   dvi_jet *variable;  /* [variables] */
   dvi__span *span;    /* [variables] of the first use of each */
   int pairs, entries; /* entries of the pattern, which has both triangles */
   int (*pair)[2];     /* [pairs] a >= b */
   int *entry;         /* [pairs] of each pair in the pattern */
+  double straight;    /* of a fixed value that is straight between multiples of this time, or 0 */
 } dvi__local;
 
 /* Make a function of kernels of one element, and empty the list. */
 bool dvi__local_make(dvi_scene *scene, dvi__kernels *list, dvi__local **local);
 
-/* Do the same with the position along the first axis as a variable, whose component is -1. */
+/* Do the same with the position as variables. That along axis i has the component -1 - i. */
 bool dvi__local_make_placed(dvi_scene *scene, dvi__kernels *list, dvi__local **local);
 
 /* Read an expression, a number or a vector of `count`, as functions local[count] of position, and
@@ -215,7 +216,7 @@ dvi_status dvi__equation_march(const dvi_scene *scene, const dvi_march_options *
 dvi_status dvi__equation_laws(const dvi_scene *scene, const dvi_march_options *options, int steps,
                               dvi_law *law, int *count);
 
-/* ---- meshes that move (moving.c, moving_probe.c) ---- */
+/* ---- meshes that move (moving.c, moving_make.c, moving_probe.c) ---- */
 
 /* Keep the whole density as one function. */
 bool dvi__moving_take_density(dvi__context *c, dvi__node root);
@@ -225,16 +226,15 @@ bool dvi__moving_make(dvi_scene *scene);
 void dvi__moving_clear(dvi_scene *scene);
 void dvi__moving_explain(const dvi_scene *scene, char *text, size_t size);
 
-/* Refuse what a probe of such a field has not. */
-bool dvi__moving_check_probe(dvi_scene *scene, const dvi__local *function, const char *name,
-                             dvi__span span);
+/* Refuse what a probe of such a field has not, and a point x, unless it is NULL, that is outside at
+ * the start. */
+bool dvi__moving_check_probe(dvi_scene *scene, const dvi__local *function, const double *x,
+                             const char *name, dvi__span span);
 
-/* Evaluate a function of the field and its slope at a point, or its integral. Returns as callbacks
- * do. */
-int dvi__moving_value(const dvi_scene *scene, const dvi__local *function, double t, const double *q,
-                      double x, double *value);
-int dvi__moving_integral(const dvi_scene *scene, const dvi__local *function, double t,
-                         const double *q, double *value);
+/* Evaluate a function of the field, its slopes and its rate at a point x, or its integral if x is
+ * NULL. Returns as callbacks do. */
+int dvi__moving_value(const dvi_scene *scene, const dvi__local *function, bool has_rates, double t,
+                      const double *q, const double *p, const double *x, double *value);
 
 /* ---- fields of rotations (rotations.c, rotations_probe.c) ---- */
 

@@ -1,4 +1,7 @@
 /* What is shown of fields with a density: their names, and a mesh for values. */
+#include <dvi/moving.h>
+#include <dvi/scene.h>
+
 #include "scene/density/scene_density.h"
 #include "scene/sections/sections.h"
 
@@ -24,7 +27,11 @@ const char *dvi_scene_axis(const dvi_scene *scene, int d)
 const dvi_mesh *dvi__density_mesh(dvi_scene *scene)
 {
   struct dvi__scene_density *s = scene->density;
-  if (s == NULL || s->mesh != NULL || s->space == NULL) return s != NULL ? s->mesh : NULL;
-  if (s->shown == NULL) (void)dvi_space_mesh(s->space, &s->shown);
+  if (s == NULL) return NULL;
+  if (s->moving != NULL && s->shown == NULL)
+    (void)dvi_moving_mesh(dvi_scene_moving(scene), 0, scene->q, &s->shown);
+  if (s->moving == NULL && s->mesh == NULL && s->space != NULL && s->shown == NULL)
+    (void)dvi_space_mesh(s->space, &s->shown);
+  if (s->moving == NULL && s->mesh != NULL) return s->mesh;
   return s->shown;
 }

@@ -127,6 +127,14 @@ static bool member_of_two(const dvi__context *c, const dvi__coordinate *x,
   return good;
 }
 
+/* Replace members, from 1, by their first numbers. */
+static void look_up(const dvi__context *c, const dvi__slots *places, int *each, int *all)
+{
+  for (int e = 0; each != NULL && e < c->elements; e++)
+    each[e] = dvi__slots_at(places, each[e] - 1);
+  if (each == NULL) *all = dvi__slots_at(places, *all - 1);
+}
+
 bool dvi__member_numbering(dvi__context *c, const dvi__coordinate *x, const dvi__subscripts *index,
                            const dvi__slots *places, dvi__numbering *numbering)
 {
@@ -134,8 +142,8 @@ bool dvi__member_numbering(dvi__context *c, const dvi__coordinate *x, const dvi_
   const bool good = index->count == 0   ? true
                     : index->count == 1 ? element_index(c, index->of[0], x->size, &each, &all)
                                         : member_of_two(c, x, index, &each, &all);
-  const bool made = good && dvi__numbering_of(c, each, all, places->first - places->stride,
-                                              places->stride, numbering);
+  if (good) look_up(c, places, each, &all);
+  const bool made = good && dvi__numbering_of(c, each, all, 0, 1, numbering);
   dvi__heap_free(each);
   return made;
 }

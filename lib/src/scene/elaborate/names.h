@@ -41,10 +41,17 @@ typedef enum dvi__kind {
 } dvi__kind;
 
 /* The numbers of a coordinate in q, or in v and p. Member m has `components` from first + m *
- * stride on. */
+ * stride on, or from place[m] on if there is such a list. */
 typedef struct dvi__slots {
   int first, stride, components;
+  const int *place;
 } dvi__slots;
+
+/* Return the first number of member m. */
+static inline int dvi__slots_at(const dvi__slots *slots, int m)
+{
+  return slots->place != NULL ? slots->place[m] : slots->first + m * slots->stride;
+}
 
 typedef struct dvi__coordinate {
   const char *name;

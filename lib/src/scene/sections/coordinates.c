@@ -67,8 +67,8 @@ static bool make_parts(dvi_scene *scene, dvi__coordinate *x)
   part[1].kind = DVI__LINES;
   part[1].part_name = 'x';
   part[1].shape = (dvi__shape){.rank = 1, .rows = 3, .columns = 1};
-  part[1].q = (dvi__slots){x->q.first + 9, x->q.stride, 3};
-  part[1].v = (dvi__slots){x->v.first + 3, x->v.stride, 3};
+  part[1].q = (dvi__slots){.first = x->q.first + 9, .stride = x->q.stride, .components = 3};
+  part[1].v = (dvi__slots){.first = x->v.first + 3, .stride = x->v.stride, .components = 3};
   x->part = part;
   return true;
 }

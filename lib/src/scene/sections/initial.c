@@ -136,7 +136,7 @@ static const dvi__coordinate *find_missing(const dvi__coordinate *x, const dvi__
 {
   for (int i = 0; i < x->size; i++)
     for (int k = 0; k < places->components; k++)
-      if (!mark[places->first + i * places->stride + k]) return x;
+      if (!mark[dvi__slots_at(places, i) + k]) return x;
   return NULL;
 }
 

@@ -67,7 +67,7 @@ static bool label_coordinate(dvi_scene *scene, const dvi__coordinate *x, which o
   for (int i = 0; i < x->size; i++)
     for (int k = 0; k < places->components; k++, text += size) {
       write_label(x, of, i, k, text, size);
-      label[places->first + i * places->stride + k] = text;
+      label[dvi__slots_at(places, i) + k] = text;
     }
   return true;
 }

@@ -239,6 +239,12 @@ dvi_status dvi__lagrangian_rate(dvi__evaluator *e, int count, const double *t, c
   return DVI_OK;
 }
 
+dvi_status dvi__lagrangian_admit(const dvi__evaluator *e, double t, const double *q)
+{
+  const dvi__lagrangian_term *l = e->system->lagrangian;
+  return l != NULL ? dvi__general_admit(l, t, q) : DVI_OK;
+}
+
 /* ---- gradient ---- */
 
 /* Sum the potentials' gradients. The first one is evaluated in place. */

@@ -70,6 +70,9 @@ dvi_status dvi__mass_energy(dvi__evaluator *e, double t, const double *q, const 
 dvi_status dvi__lagrangian_rate(dvi__evaluator *e, int count, const double *t, const double *q,
                                 const double *v, double *L_t);
 
+/* Tell if a general Lagrangian is defined at q, where a step ends. */
+dvi_status dvi__lagrangian_admit(const dvi__evaluator *e, double t, const double *q);
+
 /* Compute L_qq, L_qv, L_vv [entries*count] in the order of the system's patterns, entry-major. This
  * needs DVI__HESSIANS. For a constant mass L_qv is empty, or has the gradients of a vector
  * potential, and L_qv and L_vv may be NULL. */

@@ -445,3 +445,10 @@ dvi_status dvi__general_rate(const dvi__lagrangian_term *l, dvi__scratch *s, int
   }
   return dvi__verdict(returned, 1, count, L_t, l->name, "rate", "");
 }
+
+dvi_status dvi__general_admit(const dvi__lagrangian_term *l, double t, const double *q)
+{
+  const dvi_lagrangian *c = &l->callbacks;
+  if (l->computed != NULL || c->admit == NULL) return DVI_OK;
+  return dvi__verdict(c->admit(t, q, c->user), 1, 1, &t, l->name, "admit", "");
+}

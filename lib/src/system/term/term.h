@@ -69,6 +69,9 @@ dvi_status dvi__general_hessian(const dvi__lagrangian_term *l, dvi__scratch *s, 
 dvi_status dvi__general_rate(const dvi__lagrangian_term *l, dvi__scratch *s, int count,
                              const double *t, const double *q, const double *v, double *L_t);
 
+/* Tell if a Lagrangian is defined at q. */
+dvi_status dvi__general_admit(const dvi__lagrangian_term *l, double t, const double *q);
+
 /* Compute alpha [n] of a one-form at one point, its gauge included, and the gradients of its
  * components in the order of the term's qv. `work` is as long as the longest Hessian. */
 dvi_status dvi__form_value(const dvi__lagrangian_term *l, const double *q, double *alpha,
