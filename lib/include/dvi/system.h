@@ -207,7 +207,8 @@ typedef struct dvi_potential {
    *  differences. Fixed-point iteration alone solves steps, and methods with Hessians refuse V */
   int without_hessian;
   /** bound of the angular frequencies of a quadratic potential, by which explicit methods refuse
-   *  unstable steps, beyond 2/fastest for verlet. 0 if not known (default) */
+   *  unstable steps, beyond 2/fastest for verlet. With a one-form they are those of the motion
+   *  Omega q' = V_q of first order. 0 if not known (default) */
   double fastest;
   /** Taylor coefficients of V, V_q and V_qq along the curve t(s) = sum_k t[k] s^k,
    *  q_i(s) = sum_k q[k*n + i] s^k, k from 0 to the degree (at most DVI_TAYLOR_MAX).

@@ -196,8 +196,11 @@ dvi_status dvi__stepper_check_step(const dvi__stepper *stepper, double h)
   return dvi__fail(
       DVI_STEP_TOO_LARGE,
       "%s is unstable with h = %.9g: the system's frequencies reach %.9g, and h may be "
-      "%.9g at most; take shorter steps, or an implicit method such as imex or galerkin",
-      stepper->method->name, h, fastest, stepper->stable / fastest);
+      "%.9g at most; take shorter steps, or %s",
+      stepper->method->name, h, fastest, stepper->stable / fastest,
+      (stepper->system->terms & DVI__ONE_FORM) != 0
+          ? "vprk, which has no such bound"
+          : "an implicit method such as imex or galerkin");
 }
 
 void dvi__stepper_start(dvi__stepper *stepper, const double *v)

@@ -402,6 +402,32 @@ START_TEST(momentum_of_solitons_is_exact_without_aliasing)
 }
 END_TEST
 
+/* The dispersion u_xxx has the frequencies (2 pi k/20)^3, and methods of leapfrog's kind are stable
+ * up to sin(theta) = h omega = 1. */
+START_TEST(explicit_methods_of_first_order_know_their_largest_step)
+{
+  static const char *const methods[] = {"hp:type=2", "hp:type=3", "dg-phase"};
+  density_field field = make_kdv("fourier:modes=40,points=128");
+  dvi_system_terms terms;
+  double start = 5;
+  ck_assert_int_eq(dvi_density_system_terms(field.density, &terms), DVI_OK);
+  const double omega = terms.potentials[0].fastest, exact = pow(2 * pi * 40 / 20, 3);
+  ck_assert_double_eq_tol(omega, exact, 1e-3 * exact);
+  set_density(&field, soliton, NULL, &start);
+  ck_assert_int_eq(dvi_system_momentum(field.system, 0, field.q, field.q, field.p), DVI_OK);
+  for (int i = 0; i < 3; i++) {
+    dvi_integrator *integrator = NULL;
+    ck_assert_int_eq(dvi_integrator_create(field.system, methods[i], &integrator), DVI_OK);
+    ck_assert_int_eq(dvi_integrator_start(integrator, 0, field.q, field.p), DVI_OK);
+    ck_assert_int_eq(dvi_integrator_step(integrator, 1.01 / exact), DVI_STEP_TOO_LARGE);
+    ck_assert(strstr(dvi_last_error(), "vprk") != NULL);
+    ck_assert_int_eq(dvi_integrator_step(integrator, 0.99 / exact), DVI_OK);
+    dvi_integrator_destroy(&integrator);
+  }
+  end_density(&field);
+}
+END_TEST
+
 /* A full Hessian of 361 coordinates is not declared. The midpoint rule iterates with that of the
  * quadratic part, and has the same motion as with all Hessians (289 coordinates). */
 START_TEST(large_fields_go_without_full_hessians)
@@ -474,6 +500,7 @@ SUITE(density_fourier)
   tcase_add_test(tests, kdv_agrees_with_differences);
   tcase_add_test(tests, solitons_have_known_invariants);
   tcase_add_test(tests, momentum_of_solitons_is_exact_without_aliasing);
+  tcase_add_test(tests, explicit_methods_of_first_order_know_their_largest_step);
   tcase_add_test(tests, large_fields_go_without_full_hessians);
   tcase_add_test(tests, static_states_are_found_by_full_hessians);
 }

@@ -247,6 +247,7 @@ void dvi__density_take(const dvi_density *density, const double *U, double *q);
 /* Make the mass, the stiffness, and the load. */
 dvi_status dvi__density_make_mass(dvi_density *density);
 dvi_status dvi__density_make_stiffness(dvi_density *density);
+/* Set `fastest`. It stays 0 if it is not known, as with a two-form that is not constant. */
 dvi_status dvi__density_find_fastest(dvi_density *density);
 
 /* Find rows that repeat, and give y [last-first] = A q for some rows. The bits are those of sums
@@ -265,6 +266,9 @@ int64_t dvi__integral_entries(const dvi__integral *integral, const dvi__pattern 
 /* Make the one-form's gauge and refuse a singular two-form. */
 dvi_status dvi__density_fix_gauge(dvi_density *density);
 dvi_status dvi__density_check_two_form(dvi_density *density);
+
+/* Make the two-form of the gradients. */
+dvi_status dvi__density_two_form(const dvi_density *density, dvi__csr *Omega);
 dvi_status dvi__density_make_one_form(dvi_density *density);
 
 /* Make the terms of a system. */

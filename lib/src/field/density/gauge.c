@@ -132,20 +132,21 @@ static dvi_status refuse_odd(const dvi_density *density)
 }
 
 /* Omega is minus the gradients of alpha, row by row, and their transpose. */
-static dvi_status make_two_form(const dvi_matrix *gradients, dvi__csr *Omega)
+dvi_status dvi__density_two_form(const dvi_density *density, dvi__csr *Omega)
 {
-  double *minus = DVI_NEW(double, gradients->rows);
+  const dvi_matrix gradients = dvi__csr_view(&density->gradients, 0);
+  double *minus = DVI_NEW(double, gradients.rows);
   dvi__csr turned = {0};
   if (minus == NULL) return no_memory();
-  for (int64_t i = 0; i < gradients->rows; i++) minus[i] = -1;
-  const dvi_matrix minus_identity = {.rows = gradients->rows,
-                                     .columns = gradients->rows,
+  for (int64_t i = 0; i < gradients.rows; i++) minus[i] = -1;
+  const dvi_matrix minus_identity = {.rows = gradients.rows,
+                                     .columns = gradients.rows,
                                      .width = 1,
                                      .symmetric = 1,
                                      .value = minus};
-  dvi_status status = dvi__csr_transposed_product(gradients, &minus_identity, &turned);
+  dvi_status status = dvi__csr_transposed_product(&gradients, &minus_identity, &turned);
   const dvi_matrix other = dvi__csr_view(&turned, 0);
-  if (status == DVI_OK) status = dvi__csr_sum(gradients, &other, Omega);
+  if (status == DVI_OK) status = dvi__csr_sum(&gradients, &other, Omega);
   dvi__csr_clear(&turned);
   dvi__release(minus);
   return status;
@@ -153,12 +154,11 @@ static dvi_status make_two_form(const dvi_matrix *gradients, dvi__csr *Omega)
 
 /* Refuse a singular two-form. One that is not finite at a state that the motion need not have is
  * left to the start of a run. */
-static dvi_status check_regular(const dvi__csr *gradients)
+static dvi_status check_regular(const dvi_density *density)
 {
   dvi__csr Omega = {0};
   dvi__definite solver = {0};
-  const dvi_matrix view = dvi__csr_view(gradients, 0);
-  DVI_TRY(make_two_form(&view, &Omega));
+  DVI_TRY(dvi__density_two_form(density, &Omega));
   const dvi_matrix two_form = dvi__csr_view(&Omega, 0);
   const dvi_status status = dvi__regular_create(&two_form, &solver);
   dvi__definite_clear(&solver);
@@ -206,7 +206,7 @@ dvi_status dvi__density_check_two_form(dvi_density *density)
     if (!density->one_form.part[p]->is_constant) density->is_linear = 0;
   if (density->unknowns % 2 != 0) return refuse_odd(density);
   DVI_TRY(make_gradients(density));
-  if (density->gradients.rows > 0) return check_regular(&density->gradients);
+  if (density->gradients.rows > 0) return check_regular(density);
   if (density->one_form.has_hessian) return DVI_OK;
   return dvi__fail(DVI_UNSUPPORTED,
                    "density: a one-form that is not linear with constant coefficients has a full "

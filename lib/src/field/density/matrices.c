@@ -232,24 +232,6 @@ dvi_status dvi__density_make_stiffness(dvi_density *density)
   return status;
 }
 
-/* ---- the fastest frequency ---- */
-
-dvi_status dvi__density_find_fastest(dvi_density *density)
-{
-  dvi_matrix K = dvi__csr_view(&density->stiffness, 1), M;
-  if (density->mass.rows == 0 || density->quadratic.parts == 0) return DVI_OK;
-  DVI_TRY(dvi_density_matrix(density, DVI_FIELD_MASS, &M));
-  const dvi__pencil pencil = {.K = &K, .M = &M, .dimension = density->dimension};
-  for (int64_t i = 0; i < density->unknowns; i++)
-    if (!(diagonal_of(&density->mass, i) > 0)) return DVI_OK;
-  double bound = 0;
-  const dvi_status status = dvi__largest_eigenvalue(&pencil, &bound);
-  if (status == DVI_SINGULAR) return DVI_OK; /* an indefinite mass has no largest frequency */
-  const double roundoff = 1e-12 * dvi__largest_entry(&K) / dvi__largest_entry(&M);
-  density->fastest = isfinite(bound) && bound > roundoff ? sqrt(bound) : 0;
-  return status;
-}
-
 /* ---- questions ---- */
 
 dvi_status dvi_density_matrix(const dvi_density *density, dvi_field_operator name,

@@ -113,6 +113,8 @@ static dvi_status create_carried(dvi__stepper *self, const dvi__action_space *sp
                      dvi_rule_name(space->rule), space->nodes, u, d, 2 * d - 1);
   self->method = &carried;
   self->order = u >= 2 * d && d % 2 == 1 ? d + 1 : d;
+  /* with a linear alpha, Omega (q1 - q-1) = 2 h H_q(q0), and sin(theta) = h omega */
+  if (d == 1 && u < 2) self->stable = 1;
   self->symmetric = dvi__symmetric_rule(space->rule);
   return dvi__carried_step_create(self, space, u >= 2 * d ? 0 : d % 2 == 1 ? 1 : -1);
 }

@@ -73,6 +73,7 @@ static dvi_status create_for_form(dvi__stepper *self, const dg_phase_options *o)
                      "whose stages fulfil the constraint",
                      o->moments);
   self->order = 2;
+  self->stable = 1; /* a linear alpha makes this the leapfrog, sin(theta) = h omega */
   return dvi__dg_create(self, &space, o->alarm,
                         "take another method, dg:degree=3,stiffness=c, from the start on");
 }
