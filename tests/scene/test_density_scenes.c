@@ -480,6 +480,18 @@ START_TEST(conditions_hold_linear_fields)
 }
 END_TEST
 
+/* The force between the walls and a kink is e^{-2 sqrt(2) 10} = 5e-13 here, so that Newton's steps
+ * are long where all forces are roundoff. */
+START_TEST(a_kink_far_from_the_walls_is_static)
+{
+  requires_near(static_probe("domain: {x: [-10, 10]}\nspace: fem:degree=2,cells=60\n" SCALAR
+                             "density: -d(u,x)^2/2 - (u^2 - 1)^2/4\n"
+                             "boundary: {left: {fixed: -1}, right: {fixed: 1}}\n"
+                             "initial: {u: tanh(x/2)}\nprobes: {slope: {of: 'd(u,x)', at: 0.1}}\n"),
+                sqrt(0.5) / pow(cosh(0.1 * sqrt(0.5)), 2), 2e-3);
+}
+END_TEST
+
 /* Half of the kink 4 atan(e^x) has the energy 4, less 16 e^-20 or so beyond its end at 10. */
 START_TEST(a_static_state_needs_no_rates)
 {
@@ -549,6 +561,7 @@ SUITE(density_scenes)
   tcase_add_test(tests, a_step_is_a_fraction_of_the_largest_stable_one);
   tcase_add_test(tests, conditions_hold_linear_fields);
   tcase_add_test(tests, a_static_state_needs_no_rates);
+  tcase_add_test(tests, a_kink_far_from_the_walls_is_static);
   tcase_add_test(tests, multiscale_elements_have_the_coefficient_of_the_density);
   tcase_add_test(tests, points_follow_the_degree_of_the_density);
 }
