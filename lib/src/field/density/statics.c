@@ -19,9 +19,9 @@ enum { ITERATIONS = 60, HALVINGS = 12, FULL_MOST = 2000 /* coordinates of a full
 /* A step that is no larger beside q ends the iteration, if |F| falls no more. */
 static const double small_step = 1e-9;
 
-/* |F| that is no larger beside the terms of H q is roundoff. A field that may be moved along an axis
- * almost freely, as a kink far from the walls, is static there wherever it is, although Newton's
- * step is long. */
+/* |F| that is no larger beside the terms of H q is roundoff. A field that may be moved along an
+ * axis almost freely, as a kink far from the walls, is static there wherever it is, although
+ * Newton's step is long. */
 static const double small_force = 16 * DBL_EPSILON;
 
 static dvi_status no_memory(void)
