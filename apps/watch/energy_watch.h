@@ -8,8 +8,8 @@
  * is the mean change of the energy if coordinates and momenta go back, one at a time, to their
  * start.
  *
- * Systems that depend on time have no such watch. The first 32 steps are looked at, every 61st
- * later on, and the last. */
+ * Systems that depend on time have no such watch, but that of growth_watch.h. The first 32 steps
+ * are looked at, every 61st later on, and the last. */
 #ifndef ENERGY_WATCH_H
 #define ENERGY_WATCH_H
 #include <stdbool.h>

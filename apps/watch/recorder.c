@@ -11,6 +11,7 @@
 #include "cli/command.h"
 #include "watch/energy_report.h"
 #include "watch/energy_watch.h"
+#include "watch/growth_watch.h"
 #include "csv/events.h"
 #include "cli/file.h"
 #include "load/density.h"
@@ -44,6 +45,7 @@ typedef struct recorder {
   double t_start, t;        /* start of the run, and end of the last observed step */
   double shortest, longest; /* steps of methods that choose them, 0 before the first */
   energy_watch watch;
+  growth_watch growth;
   long steps_taken, given_steps;
   /* number counted from t = 0, so that a resumed run writes the rows of an uninterrupted one */
   long step;
@@ -169,6 +171,7 @@ static int recorder_observe(dvi_integrator *integrator, void *user)
   r->t = t;
   r->step += r->begun;
   if (r->begun) energy_watch_step(&r->watch);
+  if (r->begun) growth_watch_step(&r->growth);
   if (r->begun && !recorder_write_hits(r, integrator)) r->stop_silently = true;
   if (r->chooses && r->begun) note_step(r, integrator);
   r->row_written = false;
@@ -255,6 +258,7 @@ static int recorder_advance(recorder *r, dvi_integrator *integrator)
   tell_hits(r);
   alarms_tell(&r->alarms);
   energy_tell(&r->watch, r->request);
+  growth_watch_tell(&r->growth, request->method, request->h);
   if (r->stop_silently) return FAILED;
   const bool complete = (status != DVI_OK && request->final) || write_last_row(r, integrator);
   if (status != DVI_OK) return code;
@@ -312,6 +316,7 @@ int record(const run_request *request, const problem *scene, dvi_integrator *int
   if (code == DONE &&
       !energy_watch_start(&r.watch, scene, integrator, energy_bound(scene, request->method)))
     code = FAILED;
+  growth_watch_start(&r.growth, scene, integrator);
   r.caught = signals_note(run_ended_again);
   if (code == DONE)
     code = events_list(&r.events, scene, recorder_write_event, &r) ? write_files(&r, integrator)

@@ -80,3 +80,20 @@ sed 's/boundary: periodic/boundary: fixed/' wave.yaml >fixed.yaml
 expect 2 'no shift' run fixed.yaml --columns momentum_u
 
 finish
+
+# A potential that depends on time has no energy to watch, but steps beyond the bound show.
+cat >parametric.yaml <<END
+domain: {x: [0, 1]}
+space: fem:degree=2,cells=4
+fields: {u: scalar}
+density: u'^2/2 - d(u,x)^2/2 - 1000*u^2*(1 + 0.1*cos(t))
+boundary: fixed
+initial: {u: sin(pi*x)}
+method: verlet
+step: 0.05
+until: 1
+END
+expect 0 'an unstable step' run parametric.yaml --final
+says err 'as those of an unstable step do' 'the growth'
+expect 0 'a stable step' run parametric.yaml --final --h 0.01
+test ! -s err || fail 'a stable step is silent'

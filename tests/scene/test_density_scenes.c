@@ -238,6 +238,24 @@ START_TEST(points_enough_keep_the_momentum_of_a_polynomial)
 }
 END_TEST
 
+/* What varies along y leaves the momentum along x. */
+START_TEST(a_coefficient_takes_the_momentum_of_its_own_axis_alone)
+{
+  double first[8], value[8];
+  const double *q, *v, *p;
+  run_scene("domain: {x: [0, 2*pi], y: [0, 2*pi]}\n"
+            "space: {x: fourier:modes=3, y: fourier:modes=2}\nboundary: periodic\n" SCALAR
+            "density: u'^2/2 - d(u,x)^2/2 - (1 + 0.3*cos(y))*d(u,y)^2/2 - u^4/4\n"
+            "initial: {u: 0.5*cos(x) + 0.3*sin(x + y), u': 0.2*sin(x)}\n"
+            "method: midpoint\nstep: 0.05\nuntil: 1\n",
+            value);
+  ck_assert_int_eq(dvi_system_invariant_count(dvi_scene_system(scene)), 2);
+  dvi_scene_start(scene, &q, &v, &p);
+  ck_assert_int_eq(dvi_system_invariants(dvi_scene_system(scene), 0, q, p, first), DVI_OK);
+  requires_near(value[watched("momentum_x")], first[watched("momentum_x")], 1e-13);
+}
+END_TEST
+
 /* u = sin(t - x) moves both ends. The error of elements of second order falls by 8 when the cells
  * are halved, here below the one of the method. */
 START_TEST(ends_that_move_carry_a_wave)
@@ -498,6 +516,18 @@ START_TEST(conditions_hold_linear_fields)
 }
 END_TEST
 
+/* The force between the walls and a kink is e^{-2 sqrt(2) 10} = 5e-13 here, so that Newton's steps
+ * are long where all forces are roundoff. */
+START_TEST(a_kink_far_from_the_walls_is_static)
+{
+  requires_near(static_probe("domain: {x: [-10, 10]}\nspace: fem:degree=2,cells=60\n" SCALAR
+                             "density: -d(u,x)^2/2 - (u^2 - 1)^2/4\n"
+                             "boundary: {left: {fixed: -1}, right: {fixed: 1}}\n"
+                             "initial: {u: tanh(x/2)}\nprobes: {slope: {of: 'd(u,x)', at: 0.1}}\n"),
+                sqrt(0.5) / pow(cosh(0.1 * sqrt(0.5)), 2), 2e-3);
+}
+END_TEST
+
 /* Half of the kink 4 atan(e^x) has the energy 4, less 16 e^-20 or so beyond its end at 10. */
 START_TEST(a_static_state_needs_no_rates)
 {
@@ -554,6 +584,7 @@ SUITE(density_scenes)
   tcase_add_test(tests, a_scene_is_the_field_that_a_program_declares);
   tcase_add_test(tests, sine_gordon_waves_are_the_known_ones);
   tcase_add_test(tests, points_enough_keep_the_momentum_of_a_polynomial);
+  tcase_add_test(tests, a_coefficient_takes_the_momentum_of_its_own_axis_alone);
   tcase_add_test(tests, ends_that_move_carry_a_wave);
   tcase_add_test(tests, the_short_form_moves_plane_waves);
   tcase_add_test(tests, the_short_form_is_a_density);
@@ -567,6 +598,7 @@ SUITE(density_scenes)
   tcase_add_test(tests, a_step_is_a_fraction_of_the_largest_stable_one);
   tcase_add_test(tests, conditions_hold_linear_fields);
   tcase_add_test(tests, a_static_state_needs_no_rates);
+  tcase_add_test(tests, a_kink_far_from_the_walls_is_static);
   tcase_add_test(tests, multiscale_elements_have_the_coefficient_of_the_density);
   tcase_add_test(tests, points_follow_the_degree_of_the_density);
 }

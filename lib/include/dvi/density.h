@@ -86,6 +86,8 @@ typedef struct dvi_density_terms {
   const dvi_density_condition *condition; /**< [conditions], default: all free without flux */
   int conditions;
   int translations; /**< not 0 if l does not depend on x: momenta along periodic axes are watched */
+  /** bit a is 1 if l depends on the coordinate of axis a, whose momentum is then not watched */
+  unsigned placed_axes;
 } dvi_density_terms;
 
 #ifdef __cplusplus

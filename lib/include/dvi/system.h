@@ -206,9 +206,8 @@ typedef struct dvi_potential {
   /** not 0 if no Hessian of V is to be formed, such as a dense one of a large space, and none by
    *  differences. Fixed-point iteration alone solves steps, and methods with Hessians refuse V */
   int without_hessian;
-  /** bound of the angular frequencies of a quadratic potential, by which explicit methods refuse
-   *  unstable steps, beyond 2/fastest for verlet. With a one-form they are those of the motion
-   *  Omega q' = V_q of first order. 0 if not known (default) */
+  /** bound of the angular frequencies of a quadratic potential, with a one-form of the motion of
+   *  first order. By it methods refuse unstable steps, verlet beyond 2/fastest. 0 if not known */
   double fastest;
   /** Taylor coefficients of V, V_q and V_qq along the curve t(s) = sum_k t[k] s^k,
    *  q_i(s) = sum_k q[k*n + i] s^k, k from 0 to the degree (at most DVI_TAYLOR_MAX).

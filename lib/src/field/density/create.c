@@ -163,7 +163,7 @@ static dvi_status make(dvi_density *density, const dvi_density_terms *terms)
   forget_quadratic_points(density);
   if (density->has_rest) DVI_TRY(make_rest(density));
   DVI_TRY(dvi__density_find_fastest(density));
-  return dvi__density_make_terms(density, terms->translations);
+  return dvi__density_make_terms(density, terms);
 }
 
 dvi_status dvi_density_create(const dvi_density_terms *terms, dvi_density **density)

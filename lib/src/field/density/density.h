@@ -272,7 +272,7 @@ dvi_status dvi__density_two_form(const dvi_density *density, dvi__csr *Omega);
 dvi_status dvi__density_make_one_form(dvi_density *density);
 
 /* Make the terms of a system. */
-dvi_status dvi__density_make_terms(dvi_density *density, int translations);
+dvi_status dvi__density_make_terms(dvi_density *density, const dvi_density_terms *terms);
 
 /* Refuse a failure of a part at create, or a number that is not finite. */
 dvi_status dvi__density_refuse(int failed, const char *where);

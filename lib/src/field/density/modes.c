@@ -62,7 +62,12 @@ dvi_status dvi_density_modes(const dvi_density *density, const dvi_modes_options
   if (options != NULL) own = *options;
   if (own.count == 0) own.count = DEFAULT_COUNT;
   if (own.dimension == 0) own.dimension = density->dimension;
-  if (density->one_form.parts > 0 || (density->mass.rows == 0 && density->lagrangian.parts == 0))
+  if (density->one_form.parts > 0)
+    return dvi__fail(DVI_UNSUPPORTED,
+                     "density: modes of a field of first order are those of its two-form, not of a "
+                     "mass, and are not computed: run it by vprk, and find the frequencies of a "
+                     "probe by dvi spectrum");
+  if (density->mass.rows == 0 && density->lagrangian.parts == 0)
     return dvi__fail(DVI_UNSUPPORTED, "density: the field has no mass, against which its Hessian "
                                       "has eigenvalues: give it a kinetic part");
   if (own.count < 1 || own.count > density->unknowns)

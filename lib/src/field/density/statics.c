@@ -19,6 +19,11 @@ enum { ITERATIONS = 60, HALVINGS = 12, FULL_MOST = 2000 /* coordinates of a full
 /* A step that is no larger beside q ends the iteration, if |F| falls no more. */
 static const double small_step = 1e-9;
 
+/* |F| that is no larger beside the terms of H q is roundoff. A field that may be moved along an
+ * axis almost freely, as a kink far from the walls, is static there wherever it is, although
+ * Newton's step is long. */
+static const double small_force = 16 * DBL_EPSILON;
+
 static dvi_status no_memory(void)
 {
   return dvi__fail(DVI_NO_MEMORY, "density: no memory for a static state");
@@ -113,6 +118,7 @@ typedef struct search {
   double *q, *F, *d, *trial, *F_trial, *part; /* [n] */
   double size, length;                        /* |F|, and the last step beside q */
   double scale;                               /* the largest |q| and |d| so far */
+  double terms;                               /* size of the terms of H q */
   int iterations;
 } search;
 
@@ -132,12 +138,25 @@ static dvi_status factor(const dvi_density *density, const dvi_matrix *H, dvi__d
   return status == DVI_SINGULAR ? dvi__regular_create(H, solver) : status;
 }
 
+static double size_of_terms(const dvi__csr *H, const double *q)
+{
+  double square = 0;
+  for (int64_t i = 0; i < H->rows; i++) {
+    double sum = 0;
+    for (int64_t e = H->start[i]; e < H->start[i + 1]; e++)
+      sum += fabs(H->value[e] * q[H->column[e]]);
+    square += sum * sum;
+  }
+  return sqrt(square);
+}
+
 static dvi_status find_direction(search *s)
 {
   dvi__csr H = {0};
   dvi__definite solver = {0};
   DVI_TRY(dvi__density_hessian(s->density, s->q, &H));
   const dvi_matrix view = dvi__csr_view(&H, 1);
+  s->terms = size_of_terms(&H, s->q);
   dvi_status status = factor(s->density, &view, &solver);
   if (status == DVI_OK) status = dvi__definite_solve(&solver, s->F, s->d, NULL);
   dvi__definite_clear(&solver);
@@ -202,10 +221,15 @@ static dvi_status iterate(search *s)
   }
   if (s->size == 0) s->length = 0;
   if (s->length <= small_step) return DVI_OK;
+  if (s->size <= small_force * s->terms) {
+    s->length = s->size / s->terms;
+    return DVI_OK;
+  }
   return dvi__fail(
       DVI_NOT_CONVERGED,
       "density: Newton's method stopped after %d iterations, where its step is %.2g of "
-      "the state: start from a state nearer to a static one",
+      "the state: start from a state nearer to a static one, and a kink that may be moved almost "
+      "freely in the middle between the walls",
       s->iterations, s->length);
 }
 

@@ -207,9 +207,10 @@ static int translate(const double *q, double *xi, void *user)
   return 0;
 }
 
-static void declare_translations(dvi_density *d)
+static void declare_translations(dvi_density *d, unsigned placed_axes)
 {
   for (int axis = 0; axis < d->dimension && d->is_fourier; axis++) {
+    if ((placed_axes >> axis & 1) != 0) continue;
     struct dvi__field_translation *translation = d->translation + d->translations;
     translation->density = d;
     translation->axis = axis;
@@ -386,7 +387,7 @@ static void declare_dynamics(dvi_density *d)
   }
 }
 
-dvi_status dvi__density_make_terms(dvi_density *density, int translations)
+dvi_status dvi__density_make_terms(dvi_density *density, const dvi_density_terms *terms)
 {
   dvi_density *d = density;
   int count = 0;
@@ -394,7 +395,7 @@ dvi_status dvi__density_make_terms(dvi_density *density, int translations)
   if (d->quadratic.parts > 0) d->potential_term[count++] = quadratic_term(d);
   for (int i = 0; i < d->potentials; i++)
     d->potential_term[count++] = part_term(d, d->potential + i);
-  if (translations) declare_translations(d);
+  if (terms->translations) declare_translations(d, terms->placed_axes);
   d->terms = (dvi_system_terms){.dimension = (int)d->unknowns,
                                 .potentials = count > 0 ? d->potential_term : NULL,
                                 .potential_count = count,

@@ -1,5 +1,5 @@
-/* Translations of a linear field on a mesh that repeats itself along all axes,
- * q -> q + epsilon D_a q with
+/* Translations q -> q + epsilon D_a q of a linear field on a mesh that repeats itself along all
+ * axes, with
  *
  *     (D_a u)_v = -1/(2 m_v) sum over neighbours w of  M_1(v,w) (x_w - x_v)_a u_w ,
  *

@@ -112,7 +112,8 @@ static dvi_status make_field(dvi_scene *scene)
                                    .parts = dvi__density_parts(s, part),
                                    .condition = s->condition,
                                    .conditions = s->conditions,
-                                   .translations = s->is_uniform && !s->has_placed_data};
+                                   .translations = !s->has_placed_data,
+                                   .placed_axes = s->placed_axes};
   dvi_status status = dvi_density_create(&terms, &s->density);
   if (status != DVI_OK || s->is_static) return status;
   const double damping = scene->terms.damping;

@@ -84,8 +84,10 @@ void dvi_scene_density_explain(const dvi_scene *scene, char *text, size_t size)
   if (text[strlen(text) - 1] != '\n') add(&to, "\n");
   dvi_density_explain(s->density, text + strlen(text), size - strlen(text));
   if (text[strlen(text) - 1] != '\n') add(&to, "\n");
-  for (int d = 0; d < s->jets.dimension && s->mesh == NULL && s->is_uniform; d++)
-    if (strncmp(s->axis[d].kind, "fourier", strlen("fourier")) == 0) add_momentum(s, d, &to);
+  for (int d = 0; d < s->jets.dimension && s->mesh == NULL; d++)
+    if ((s->placed_axes >> d & 1) == 0 &&
+        strncmp(s->axis[d].kind, "fourier", strlen("fourier")) == 0)
+      add_momentum(s, d, &to);
 }
 
 const dvi_density *dvi_scene_density(const dvi_scene *scene)

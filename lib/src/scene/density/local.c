@@ -64,6 +64,7 @@ static bool convert_input(dvi_scene *scene, dvi__local *local, const dvi__kernel
     local->has_time = true;
   } else if (!dvi__jet_at(scene->jets, number, &jet.component, jet.order) && !local->is_placed) {
     local->has_place = true;
+    local->axes |= 1U << number;
     *to = (dvi__kernel_input){.block = PLACE, .base = number};
   } else {
     if (number < local->dimension) jet.component = -1 - number;

@@ -18,6 +18,7 @@ typedef struct dvi__local {
   dvi__scene_term *term;
   int dimension;
   bool has_time, has_place;
+  unsigned axes;  /* bit a is 1 if it depends on the position along axis a */
   bool is_placed; /* the position is a variable */
   int variables;
   dvi_jet *variable;  /* [variables] */
@@ -116,6 +117,7 @@ struct dvi__scene_density {
   int summands[DVI__DENSITY_CLASSES];
   int degree;                    /* of the density in the fields, or -1 if no polynomial */
   bool is_uniform;               /* the density does not depend on position */
+  unsigned placed_axes;          /* bit a is 1 if it depends on the position along axis a */
   bool is_static;                /* it has no rates */
   char chosen[DVI_AXES_MAX][96]; /* kinds of the axes, with the points chosen here */
   dvi_space *space;

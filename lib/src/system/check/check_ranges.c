@@ -26,6 +26,16 @@ static int same_bits(double a, double b)
   return bits_of_a == bits_of_b;
 }
 
+static dvi_status refuse_range(const dvi__potential_term *p, int returned, int first, int last)
+{
+  char reason[DVI__SENTENCE_SIZE];
+  dvi__take_reason(reason);
+  return dvi__fail(
+      returned < 0 ? DVI_CALLBACK_FAILED : DVI_CALLBACK_RETRY,
+      "system check: %s: the gradient_range callback returned %d for coordinates %d to %d%s%s",
+      p->name, returned, first, last - 1, reason[0] != '\0' ? ": " : "", reason);
+}
+
 /* Compare one range with the whole gradient. The callback sees NaN beyond its reach and on both
  * sides of the range. `hidden` holds NaN before and after the call. */
 static dvi_status compare_range(dvi__check *c, const dvi__potential_term *p, int first, int last,
@@ -38,11 +48,7 @@ static dvi_status compare_range(dvi__check *c, const dvi__potential_term *p, int
   expose_range(c, asked->reach, first, last, c->q, hidden);
   const int returned = asked->gradient_range(c->t, hidden, first, last, part, asked->user);
   expose_range(c, asked->reach, first, last, NULL, hidden);
-  if (returned != 0)
-    return dvi__fail(
-        returned < 0 ? DVI_CALLBACK_FAILED : DVI_CALLBACK_RETRY,
-        "system check: %s: the gradient_range callback returned %d for coordinates %d to %d",
-        p->name, returned, first, last - 1);
+  if (returned != 0) return refuse_range(p, returned, first, last);
   for (int i = 0; i < count && c->range.row < 0; i++)
     if (!same_bits(whole[first + i], part[i]))
       c->range = (dvi__broken_range){.term = p,

@@ -10,8 +10,11 @@
 static dvi_status invariant_verdict(int returned, const char *name)
 {
   if (returned == 0) return DVI_OK;
+  char reason[DVI__SENTENCE_SIZE];
+  dvi__take_reason(reason);
   return dvi__fail(returned < 0 ? DVI_CALLBACK_FAILED : DVI_CALLBACK_RETRY,
-                   "invariant '%s': the callback returned %d", name, returned);
+                   "invariant '%s': the callback returned %d%s%s", name, returned,
+                   reason[0] != '\0' ? ": " : "", reason);
 }
 
 /* Compute J = p.xi(q)  (Marsden and West 2001, eq. 1.2.6). */
