@@ -11,7 +11,7 @@
 
 /* A prime number of steps, so that a motion whose period is a whole number of steps is seen at all
  * its phases. */
-enum { EVERY_STEP = 32, STRIDE = 61 };
+enum { STRIDE = 61 };
 
 /* Least scale, as a fraction of the energy. A system at rest has no other scale. */
 static const double least_scale = 1e-8;
@@ -134,7 +134,7 @@ static void energy_watch_look(energy_watch *w)
 
 bool energy_look_due(long steps)
 {
-  return steps <= EVERY_STEP || steps % STRIDE == 0;
+  return steps <= ENERGY_EVERY_STEP || steps % STRIDE == 0;
 }
 
 /* Affine rows do work, as those of a disk that turns, in systems that do not depend on time. */

@@ -16,7 +16,7 @@
 
 #include "problem.h"
 
-enum { ENERGY_LOOKS_MAX = 256 };
+enum { ENERGY_LOOKS_MAX = 256, ENERGY_EVERY_STEP = 32 };
 
 /** The energy at one time. */
 typedef struct energy_look {

@@ -5,7 +5,7 @@
 #include "cli/command.h"
 #include "watch/energy_watch.h"
 
-enum { FIRST_STEP = 4, EVERY_STEP = 32 };
+enum { FIRST_STEP = 4 };
 
 static const double step_factor = 1.5, look_factor = 1e3, alarming = 1e6;
 
@@ -27,7 +27,7 @@ void growth_watch_step(growth_watch *w)
 {
   w->steps++;
   if (!w->is_on || w->steps < FIRST_STEP || !energy_look_due(w->steps)) return;
-  const double size = sum_of_sizes(w), least = w->steps <= EVERY_STEP ? step_factor : look_factor,
+  const double size = sum_of_sizes(w), least = w->steps <= ENERGY_EVERY_STEP ? step_factor : look_factor,
                factor = w->last > 0.0 ? size / w->last : 1.0;
   const bool grows = factor > least && isfinite(factor);
   if (!grows) w->from = dvi_integrator_time(w->integrator);

@@ -85,8 +85,9 @@ static void count_columns(definite *f, const dvi__pattern *A)
 static dvi_status make_blocks(definite *f, const dvi__pattern *A)
 {
   const int n = A->columns;
-  int *work = DVI_NEW(int, 4 * (size_t)n), *order = work + 3 * (size_t)n;
+  int *work = DVI_NEW(int, 4 * (size_t)n);
   if (work == NULL) return refuse_memory(n);
+  int *const order = work + 3 * (size_t)n;
   dvi__elimination_postorder(n, f->parent, order, work);
   for (int k = 0; k < n; k++) work[k] = f->order[order[k]];
   memcpy(f->order, work, (size_t)n * sizeof *work);

@@ -1,13 +1,13 @@
 /* The largest frequency of the quadratic parts of a field. With a mass it is that of
  * M u'' = -K u. With a constant two-form Omega it is that of Omega u' = K u. */
 #include <math.h>
-#include <string.h>
 
 #include "core/memory.h"
 #include "core/status.h"
 #include "field/algebra/definite.h"
 #include "field/algebra/largest.h"
 #include "field/algebra/random.h"
+#include "field/algebra/vectors.h"
 #include "field/density/density.h"
 
 /* ---- of second order ---- */
@@ -38,13 +38,6 @@ static dvi_status find_of_mass(dvi_density *density)
 
 /* ---- of first order ---- */
 
-static double dot(int64_t n, const double *x, const double *y)
-{
-  double sum = 0;
-  for (int64_t i = 0; i < n; i++) sum += x[i] * y[i];
-  return sum;
-}
-
 /* Return the largest omega, or 0 if K is neither positive nor negative. Omega^-1 K is skew in the
  * scalar product of K. The quotient u'.K u'/(u.K u) of a rate u' and its field u is then Rayleigh's
  * for omega^2, which grows as powers of Omega^-1 K turn u to the fastest fields. */
@@ -57,11 +50,11 @@ static dvi_status iterate(const dvi_matrix *K, const dvi__definite *two_form, do
   double *u = room, *Ku = u + n, *rate = Ku + n, last = 0;
   (void)dvi__fill_random(n, 31, u);
   dvi_matrix_multiply(K, 0, u, Ku);
-  double energy = dot(n, u, Ku);
+  double energy = dvi__dot(n, u, Ku);
   for (int k = 0; k < MOST; k++) {
     DVI_TRY(dvi__definite_solve(two_form, Ku, rate, NULL));
     dvi_matrix_multiply(K, 0, rate, Ku);
-    const double next = dot(n, rate, Ku), square = next / energy;
+    const double next = dvi__dot(n, rate, Ku), square = next / energy;
     if (!(square > 0) || !isfinite(square)) return DVI_OK;
     const double shrink = 1 / sqrt(fabs(next));
     for (int64_t i = 0; i < n; i++) Ku[i] *= shrink;

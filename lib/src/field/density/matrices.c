@@ -10,7 +10,6 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "field/algebra/definite.h"
-#include "field/algebra/largest.h"
 #include "field/density/density.h"
 
 static dvi_status no_memory(void)

@@ -27,20 +27,20 @@ static void copy_density(const dvi_moving_terms *t, dvi_moving *m)
                                                                                : NULL;
 }
 
-/* Place the quadrature points in a cell. */
-static dvi_status make_rule(dvi_moving *m)
+dvi_status dvi__moving_rule(int dimension, int points, double (*place)[DVI__CELL_NODES],
+                            double *weight)
 {
-  if (m->dimension == 2) {
-    const dvi__simplex_rule *rule = dvi__simplex_rule_of(2, 0, m->points);
-    for (int k = 0; k < m->points; k++) {
-      memcpy(m->place[k], rule->place[k], sizeof m->place[k]);
-      m->weight[k] = rule->weight[k];
+  if (dimension == 2) {
+    const dvi__simplex_rule *rule = dvi__simplex_rule_of(2, 0, points);
+    for (int k = 0; k < points; k++) {
+      memcpy(place[k], rule->place[k], sizeof place[k]);
+      weight[k] = rule->weight[k];
     }
     return DVI_OK;
   }
   double gauss[DVI_MOVING_POINTS_MAX];
-  DVI_TRY(dvi_quadrature(DVI_GAUSS, m->points, gauss, m->weight));
-  for (int k = 0; k < m->points; k++) m->place[k][0] = 1 - gauss[k], m->place[k][1] = gauss[k];
+  DVI_TRY(dvi_quadrature(DVI_GAUSS, points, gauss, weight));
+  for (int k = 0; k < points; k++) place[k][0] = 1 - gauss[k], place[k][1] = gauss[k];
   return DVI_OK;
 }
 
@@ -61,7 +61,7 @@ static dvi_status make(const dvi_moving_terms *t, dvi_moving *m)
   m->user = t->user;
   copy_density(t, m);
   for (int k = 0; k < m->dimension * m->components && t->jump != NULL; k++) m->jump[k] = t->jump[k];
-  DVI_TRY(make_rule(m));
+  DVI_TRY(dvi__moving_rule(m->dimension, m->points, m->place, m->weight));
   DVI_TRY(t->mesh != NULL ? dvi__moving_take_mesh(t, m) : dvi__moving_take_axis(t, m));
   return dvi__moving_lay_out(m);
 }

@@ -1,11 +1,9 @@
 /* Functions of the field at points, and their integrals, by Gauss's rule or that of triangles. */
-#include <dvi/quadrature.h>
 #include <string.h>
 
 #include "core/memory.h"
 #include "core/status.h"
 #include "field/moving/moving.h"
-#include "field/space/simplex_rule.h"
 
 enum { GAUSS = 8, OF_TRIANGLE = 6 };
 
@@ -20,21 +18,6 @@ typedef struct rule {
   int count;
   double place[GAUSS][DVI__CELL_NODES], weight[GAUSS];
 } rule;
-
-static dvi_status make_rule(const dvi_moving *m, rule *r)
-{
-  double gauss[GAUSS];
-  r->count = m->dimension == 1 ? GAUSS : OF_TRIANGLE;
-  if (m->dimension == 1) {
-    DVI_TRY(dvi_quadrature(DVI_GAUSS, GAUSS, gauss, r->weight));
-    for (int k = 0; k < GAUSS; k++) r->place[k][0] = 1 - gauss[k], r->place[k][1] = gauss[k];
-    return DVI_OK;
-  }
-  const dvi__simplex_rule *of = dvi__simplex_rule_of(2, 0, OF_TRIANGLE);
-  memcpy(r->weight, of->weight, sizeof *r->weight * OF_TRIANGLE);
-  for (int k = 0; k < OF_TRIANGLE; k++) memcpy(r->place[k], of->place[k], sizeof r->place[k]);
-  return DVI_OK;
-}
 
 static void put(const dvi__moving_element *e, const dvi_density_part *function, int at,
                 const double *place, sample *s)
@@ -113,7 +96,8 @@ static dvi_status integrate(const dvi_moving *m, const dvi__moving_state *state,
 {
   rule r;
   double sum = 0;
-  DVI_TRY(make_rule(m, &r));
+  r.count = m->dimension == 1 ? GAUSS : OF_TRIANGLE;
+  DVI_TRY(dvi__moving_rule(m->dimension, r.count, r.place, r.weight));
   for (int cell = 0; cell < m->cells; cell++) {
     const int returned = add_cell(m, state, cell, &r, function, &sum);
     if (returned != 0) return dvi__moving_refuse(DVI_CALLBACK_FAILED, returned);

@@ -182,6 +182,10 @@ int dvi__moving_sum(const dvi_moving *m, const dvi__moving_state *state,
 /* Fail with the reason of a callback, by a status, or else with what it returned. */
 dvi_status dvi__moving_refuse(dvi_status status, int returned);
 
+/* Place so many quadrature points in a cell, in barycentric coordinates. */
+dvi_status dvi__moving_rule(int dimension, int points, double (*place)[DVI__CELL_NODES],
+                            double *weight);
+
 /* Look for a cell that has no volume. Returns 1 with a reason then, or as the path does. */
 int dvi__moving_admit(const dvi_moving *m, const dvi__moving_state *state);
 

@@ -10,7 +10,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/memory.h"
 #include "core/status.h"
 #include "field/algebra/vectors.h"
 #include "field/schroedinger/ground.h"
@@ -141,8 +140,8 @@ dvi_status dvi__ground_descend(dvi__ground *g)
   dvi_status status = DVI_OK;
   g->strength = 1;
   dvi__ground_settle(g);
-  for (int i = 0; i < SADDLES && !is_minimum && status == DVI_OK; i++) {
-    DVI_TRY(dvi__ground_is_minimum(g, &is_minimum));
+  DVI_TRY(dvi__ground_is_minimum(g, &is_minimum));
+  for (int i = 0; i < SADDLES && status == DVI_OK && (i == 0 || !is_minimum); i++) {
     if (!is_minimum) leave_saddle(g);
     status = settle_down(g);
     if (status == DVI_OK) status = dvi__ground_is_minimum(g, &is_minimum);

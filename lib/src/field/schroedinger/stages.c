@@ -92,15 +92,22 @@ static void precondition(dvi__gauss *g, double *R)
   mix(g, g->X, g->mixed, R);
 }
 
+/* Find the preconditioned residual f of Z. */
+static void residual(void *of, const double *Z, double *f)
+{
+  dvi__gauss *g = of;
+  act(g, Z);
+  find_residual(g, Z);
+  precondition(g, f);
+}
+
 /* ---- the iteration ---- */
 
 /* Apply a correction, and return its largest component. */
 static double correct(dvi__gauss *g)
 {
   const int64_t all = 2 * g->stages * g->s->free;
-  act(g, g->Z);
-  find_residual(g, g->Z);
-  precondition(g, g->R);
+  residual(g, g->Z, g->R);
   for (int64_t i = 0; i < all; i++) g->Z[i] -= g->R[i];
   return dvi__largest((size_t)all, g->R);
 }
@@ -137,14 +144,6 @@ static int iterate(dvi__gauss *g, double size)
 
 /* ---- Newton's method ---- */
 
-static void newton_residual(void *of, const double *Z, double *f)
-{
-  dvi__gauss *g = of;
-  act(g, Z);
-  find_residual(g, Z);
-  precondition(g, f);
-}
-
 static void newton_stand_at(void *of, const double *Z)
 {
   dvi__gauss *g = of;
@@ -175,7 +174,7 @@ dvi_status dvi__gauss_create_newton(dvi__gauss *g)
   const int64_t unknowns = 2 * g->stages * s->free;
   const dvi__smooth_equations equations = {.unknowns = (int)unknowns,
                                            .of = g,
-                                           .residual = newton_residual,
+                                           .residual = residual,
                                            .stand_at = newton_stand_at,
                                            .times = newton_times};
   if (s->beta == NULL && !s->depends_on_time && !s->is_fourier) return DVI_OK;

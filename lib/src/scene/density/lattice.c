@@ -4,7 +4,6 @@
  * symmetries are found by trying: shifts of a component, and turns of a complex field. */
 #include <dvi/multisymplectic.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "scene/density/scene_density.h"

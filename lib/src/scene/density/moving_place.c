@@ -28,15 +28,16 @@ static int same_variable(const dvi__scene_moving *m, int k)
   return of->component;
 }
 
-/* Points `from` to from + some of all count. */
+/* Points `from` to from + some of all count, and same_variable of each variable. */
 typedef struct part {
   int count, from, some;
+  const int *same;
 } part;
 
 static void take(const dvi__scene_moving *m, part of, const double *x, const double *z, double *to)
 {
   for (int k = 0; k < m->placed->variables; k++) {
-    const int i = same_variable(m, k);
+    const int i = of.same[k];
     const double *row = i < 0 ? x + (ptrdiff_t)(-1 - i) * of.count : z + (ptrdiff_t)i * of.count;
     memcpy(to + (ptrdiff_t)k * of.some, row + of.from, (size_t)of.some * sizeof *to);
   }
@@ -71,10 +72,9 @@ static int evaluate(const dvi__scene_moving *m, part of, double t, const double 
   const int failed = dvi__local_density(of.some, t, NULL, all, NULL, first,
                                         has_second ? second : NULL, (void *)placed);
   for (int k = 0; k < placed->variables && failed == 0; k++)
-    if (same_variable(m, k) < 0)
-      put(of, -1 - same_variable(m, k), first + (ptrdiff_t)k * of.some, l_x);
+    if (of.same[k] < 0) put(of, -1 - of.same[k], first + (ptrdiff_t)k * of.some, l_x);
   for (int e = 0; e < placed->pairs && has_second && failed == 0; e++) {
-    const int a = same_variable(m, placed->pair[e][0]), b = same_variable(m, placed->pair[e][1]);
+    const int a = of.same[placed->pair[e][0]], b = of.same[placed->pair[e][1]];
     if (a < 0 || b < 0) put_second(m, of, a, b, second + (ptrdiff_t)e * of.some, l_xz, l_xx);
   }
   return failed;
@@ -90,12 +90,13 @@ int dvi__moving_place_derivative(int count, double t, const double *x, const dou
 {
   const dvi__scene_moving *m = user;
   const int axes = m->density->jets.dimension;
-  int failed = 0;
+  int failed = 0, same[MOST];
+  for (int k = 0; k < m->placed->variables; k++) same[k] = same_variable(m, k);
   clear(axes * count, l_x);
   clear(axes * m->whole->variables * count, l_xz);
   clear(axes * (axes + 1) / 2 * count, l_xx);
   for (int from = 0; from < count && failed == 0; from += POINTS) {
-    const part of = {count, from, count - from < POINTS ? count - from : POINTS};
+    const part of = {count, from, count - from < POINTS ? count - from : POINTS, same};
     failed = evaluate(m, of, t, x, z, l_x, l_xz, l_xx);
   }
   return failed;

@@ -5,7 +5,6 @@
  * is left without them. The nodes are the ends of the cells of the space, which are equal. */
 #include <dvi/group.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "scene/density/rotations.h"
