@@ -63,7 +63,7 @@ static hamiltonian_options hamiltonian_options_of(const dvi__stepper *self)
 /* ---- Hamiltonians ---- */
 
 /* The memory holds the largest |q_i| so far, or the motion of the first step, and the largest |p_i|
- * for each i. */
+ * for each i, or what the forces of the first step could add to it. */
 enum { LARGEST_Q = DVI__CARRIED, LARGEST_P };
 
 typedef struct canonical {
@@ -118,10 +118,24 @@ static dvi_status hamiltonian_check_regular(dvi__stepper *self, const dvi__state
   return status == DVI_SINGULAR ? hamiltonian_refuse(self, DVI_SINGULAR) : status;
 }
 
+/* Count what the forces of the first step would add to the momenta at the size of the coordinates.
+ * A small momentum beside stiff forces is lost in the roundings of these, and in its own unit they
+ * would be large (central differences of a third derivative at 40 points or more). */
+static dvi_status hamiltonian_count_forces(const dvi__stepper *self, const dvi__state *state,
+                                           double h, double of_q)
+{
+  const canonical *own = self->own;
+  double *of_p = self->memory + LARGEST_P, *rows = own->unit;
+  DVI_TRY(dvi__canonical_stiffness(own->one.of, state->t, state->q, state->p, rows));
+  for (int i = 0; i < self->system->n; i++) of_p[i] = fmax(of_p[i], fabs(h) * rows[i] * of_q);
+  return DVI_OK;
+}
+
 /* Choose units for the increments of p as for those of q, so that the units and masses of
  * coordinates do not matter. A momentum that holds only the rounding errors of others gives no
  * unit. */
-static void hamiltonian_choose_units(const dvi__stepper *self, const dvi__state *state, double h)
+static dvi_status hamiltonian_choose_units(const dvi__stepper *self, const dvi__state *state,
+                                           double h)
 {
   const canonical *own = self->own;
   const size_t n = (size_t)self->system->n;
@@ -129,12 +143,14 @@ static void hamiltonian_choose_units(const dvi__stepper *self, const dvi__state 
   *of_q = fmax(*of_q, dvi__largest(n, state->q));
   if (self->memory[DVI__LENGTH] == 0)
     *of_q = fmax(*of_q, fabs(h) * dvi__largest(n, self->memory + own->one.last));
+  if (self->memory[DVI__LENGTH] == 0) DVI_TRY(hamiltonian_count_forces(self, state, h, *of_q));
   for (size_t i = 0; i < n; i++) of_p[i] = fmax(of_p[i], fabs(state->p[i]));
   const double least = 0x1p-40 * dvi__largest(n, of_p);
   for (size_t i = 0; i < n; i++) {
     const double unit = fmax(of_p[i], least) / *of_q;
     own->unit[i] = isnormal(unit) && isnormal(1 / unit) ? unit : 1;
   }
+  return DVI_OK;
 }
 
 static dvi_status hamiltonian_step(dvi__stepper *self, dvi__state *state, double h)
@@ -142,7 +158,7 @@ static dvi_status hamiltonian_step(dvi__stepper *self, dvi__state *state, double
   const canonical *own = self->own;
   const dvi__one_step *one = &own->one;
   DVI_TRY(hamiltonian_check_regular(self, state));
-  hamiltonian_choose_units(self, state, h);
+  DVI_TRY(hamiltonian_choose_units(self, state, h));
   DVI_TRY(dvi__one_step_solve(self, state, h));
   DVI_TRY(dvi__canonical_residual(one->of, one->x, one->work));
   dvi__canonical_ends(one->of, one->x, one->dq, one->dp);

@@ -1,5 +1,6 @@
 #include "step/hamiltonian/canonical.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "step/onestep/collocation.h"
@@ -265,6 +266,17 @@ dvi_status dvi__canonical_curvature(dvi__canonical *c, double t, const double *q
 {
   *H_pp = c->H_pp;
   return dvi__lagrangian_hessian(c->evaluator, 1, &t, q, p, c->H_qq, c->H_qp, c->H_pp);
+}
+
+dvi_status dvi__canonical_stiffness(dvi__canonical *c, double t, const double *q, const double *p,
+                                    double *rows)
+{
+  const dvi__pattern *qq = &c->system->qq;
+  DVI_TRY(dvi__lagrangian_hessian(c->evaluator, 1, &t, q, p, c->H_qq, c->H_qp, c->H_pp));
+  memset(rows, 0, (size_t)c->n * sizeof(double));
+  for (int j = 0; j < qq->columns; j++)
+    for (int e = qq->start[j]; e < qq->start[j + 1]; e++) rows[qq->row[e]] += fabs(c->H_qq[e]);
+  return DVI_OK;
 }
 
 /* ---- guesses and path ---- */

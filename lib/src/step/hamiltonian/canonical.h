@@ -70,4 +70,8 @@ void dvi__canonical_path(const dvi__canonical *canonical, const double *kept, co
 dvi_status dvi__canonical_curvature(dvi__canonical *canonical, double t, const double *q,
                                     const double *p, const double **H_pp);
 
+/* Set rows [n] to the sums of |d2H/dq_i dq_j| over j. */
+dvi_status dvi__canonical_stiffness(dvi__canonical *canonical, double t, const double *q,
+                                    const double *p, double *rows);
+
 #endif
