@@ -45,4 +45,7 @@ extern const dvi__factor_kind dvi__definite_factor;  /* ldl.c */
 extern const dvi__factor_kind dvi__bordered_factor;  /* border.c */
 extern const dvi__factor_kind dvi__iterative_factor; /* iterative.c */
 
+/* dvi__linear_share for a factor of dvi__definite_factor. DVI_NO_MEMORY. */
+dvi_status dvi__definite_share(const void *factored, const dvi__pattern *pattern, void **factor);
+
 #endif

@@ -29,15 +29,22 @@ typedef struct definite {
   int *parent, *length, *flag, *column; /* [n] elimination tree and work */
   int *diagonal;                        /* [n] entries of the matrix on its diagonal, in order */
   int *start, *row;                     /* pattern of L */
-  double *L, *D, *y;
+  double *L, *D;
+  double *y;               /* [2 n] work of solutions */
   dvi__supernodes *blocks; /* NULL, or what stands for `row` and L */
   double condition;
+  int is_shared; /* all but y belongs to another factor */
 } definite;
 
 static void ldl_destroy(void *factor)
 {
   definite *f = factor;
   if (f == NULL) return;
+  dvi__release(f->y);
+  if (f->is_shared) {
+    dvi__release(f);
+    return;
+  }
   dvi__release(f->order);
   dvi__release(f->row);
   dvi__release(f->L);
@@ -54,8 +61,9 @@ static dvi_status refuse_memory(int n)
 static dvi_status ldl_lay_out(definite *f, size_t n)
 {
   int *at = f->order = DVI_NEW(int, 8 * n + 1);
-  f->D = DVI_NEW(double, 2 * n);
-  if (at == NULL || f->D == NULL) return refuse_memory((int)n);
+  f->D = DVI_NEW(double, n);
+  f->y = DVI_NEW(double, 2 * n);
+  if (at == NULL || f->D == NULL || f->y == NULL) return refuse_memory((int)n);
   f->place = at + n;
   f->parent = at + 2 * n;
   f->length = at + 3 * n;
@@ -63,7 +71,6 @@ static dvi_status ldl_lay_out(definite *f, size_t n)
   f->column = at + 5 * n;
   f->diagonal = at + 6 * n;
   f->start = at + 7 * n;
-  f->y = f->D + n;
   return DVI_OK;
 }
 
@@ -127,6 +134,19 @@ static dvi_status ldl_create(const dvi__factor_form *form, void **factor)
   return status;
 }
 
+dvi_status dvi__definite_share(const void *factored, const dvi__pattern *pattern, void **factor)
+{
+  definite *f = *factor = DVI_NEW(definite, 1);
+  if (f == NULL) return refuse_memory(pattern->columns);
+  *f = *(const definite *)factored;
+  f->is_shared = 1;
+  f->y = DVI_NEW(double, 2 * (size_t)pattern->columns);
+  if (f->y != NULL) return DVI_OK;
+  ldl_destroy(f);
+  *factor = NULL;
+  return refuse_memory(pattern->columns);
+}
+
 /* D_k is what the rows before leave of A_kk. Their ratio does not depend on the scales of rows. */
 static double find_condition(const definite *f, int n, const double *values)
 {
@@ -158,7 +178,7 @@ static dvi_status ldl_solve(void *factor, const dvi__pattern *A, double *b)
   const int n = A->columns;
   ldl_perm(n, f->y, b, f->order);
   if (f->blocks != NULL) {
-    dvi__supernodes_solve(f->blocks, f->D, f->y);
+    dvi__supernodes_solve(f->blocks, f->D, f->y, f->y + n);
   } else {
     ldl_lsolve(n, f->y, f->start, f->row, f->L);
     ldl_dsolve(n, f->y, f->D);

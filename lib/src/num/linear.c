@@ -290,6 +290,48 @@ int dvi__linear_tells_definite(const dvi__linear *linear)
   return linear->kind->is_definite != NULL;
 }
 
+static dvi_status create_and_factor(const dvi__pattern *pattern, dvi__linear_kind kind,
+                                    const double *values, dvi_counters *counters,
+                                    dvi__linear **linear)
+{
+  DVI_TRY(dvi__linear_create(pattern, kind, counters, linear));
+  const dvi_status status = dvi__linear_factor(*linear, values);
+  if (status != DVI_OK) dvi__linear_destroy(linear);
+  return status;
+}
+
+static int has_positive_diagonal(const dvi__pattern *pattern, const double *values)
+{
+  for (int j = 0; j < pattern->columns; j++) {
+    const int e = dvi__pattern_find(pattern, j, j);
+    if (e < 0 || !(values[e] > 0)) return 0;
+  }
+  return 1;
+}
+
+dvi_status dvi__linear_create_symmetric(const dvi__pattern *pattern, const double *values,
+                                        dvi_counters *counters, dvi__linear **linear)
+{
+  *linear = NULL;
+  DVI_TRY(linear_check_square(pattern));
+  if (!dense_is_better(pattern) && has_positive_diagonal(pattern, values)) {
+    const dvi_status status = create_and_factor(pattern, DVI__LINEAR_DEFINITE, values, counters,
+                                                linear);
+    if (status != DVI_SINGULAR) return status;
+  }
+  return create_and_factor(pattern, DVI__LINEAR_AUTO, values, counters, linear);
+}
+
+dvi_status dvi__linear_share(const dvi__linear *factored, dvi_counters *counters,
+                             dvi__linear **linear)
+{
+  const dvi__pattern *pattern = factored->form.pattern;
+  DVI_TRY(dvi__linear_create(pattern, DVI__LINEAR_DEFINITE, counters, linear));
+  const dvi_status status = dvi__definite_share(factored->factor, pattern, &(*linear)->factor);
+  if (status != DVI_OK) dvi__linear_destroy(linear);
+  return status;
+}
+
 /* ---- solve ---- */
 
 static void scale_vector(int n, int parts, const double *by, double *b)

@@ -42,6 +42,12 @@ typedef struct dvi__operator {
 dvi_status dvi__linear_create(const dvi__pattern *pattern, dvi__linear_kind kind,
                               dvi_counters *counters, dvi__linear **linear);
 
+/* Create a solver of a symmetric matrix, and factor the matrix with these values. The kind is
+ * DEFINITE where a sparse one is positive definite, which saves half of the work or more, else that
+ * of AUTO. Fails like dvi__linear_factor. */
+dvi_status dvi__linear_create_symmetric(const dvi__pattern *pattern, const double *values,
+                                        dvi_counters *counters, dvi__linear **linear);
+
 /* Create a sparse solver of a matrix whose last `border` rows and columns may be full. Work and
  * memory are in proportion to the size all the same. */
 dvi_status dvi__linear_create_bordered(const dvi__pattern *pattern, int border,
@@ -51,6 +57,12 @@ dvi_status dvi__linear_create_bordered(const dvi__pattern *pattern, int border,
  * and whose analysis serves both. `kind` is one of these two. */
 dvi_status dvi__linear_create_like(dvi__linear *like, dvi__linear_kind kind, dvi_counters *counters,
                                    dvi__linear **linear);
+
+/* Create a DEFINITE solver of the matrix that another one has factored. It has work of its own, so
+ * that threads may solve beside each other, and is not to factor. The other one must outlive it,
+ * with its factor. */
+dvi_status dvi__linear_share(const dvi__linear *factored, dvi_counters *counters,
+                             dvi__linear **linear);
 
 /* Create a solver of an operator, which is copied. dvi__linear_factor does not read values then. */
 dvi_status dvi__linear_create_iterative(const dvi__operator *A, dvi_counters *counters,

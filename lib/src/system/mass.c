@@ -20,14 +20,15 @@ static dvi_status check_symmetric(const dvi__pattern *pattern, const double *val
   return DVI_OK;
 }
 
-/* Check with the kind of factors that an evaluator will use, so that both give the same answer. */
-static dvi_status check_regular_mass(const dvi__pattern *pattern, const double *values)
+/* Check with the kind of factors that an evaluator will use, so that both give the same answer.
+ * Evaluators share the factor of a positive mass. */
+static dvi_status factor_mass(dvi_system *s)
 {
-  dvi__linear *linear;
-  dvi_status status = dvi__linear_create(pattern, DVI__LINEAR_AUTO, NULL, &linear);
-  if (status == DVI_OK) status = dvi__linear_factor(linear, values);
-  dvi__linear_destroy(&linear);
-  return status == DVI_OK ? DVI_OK : dvi__fail_in(status, "system: mass matrix");
+  dvi__linear **factor = &s->mass_factor;
+  const dvi_status status = dvi__linear_create_symmetric(&s->vv, s->mass_values, NULL, factor);
+  if (status != DVI_OK) return dvi__fail_in(status, "system: mass matrix");
+  if (dvi__linear_kind_of(*factor) != DVI__LINEAR_DEFINITE) dvi__linear_destroy(factor);
+  return DVI_OK;
 }
 
 static dvi_status copy_sparse_mass(dvi_system *s, const dvi_mass *mass)
@@ -36,11 +37,12 @@ static dvi_status copy_sparse_mass(dvi_system *s, const dvi_mass *mass)
   const size_t entries = (size_t)dvi__pattern_entries(&s->vv);
   if (dvi__first_not_finite(entries, mass->values) >= 0)
     return dvi__fail(DVI_SINGULAR, "system: the mass matrix is not finite");
-  DVI_TRY(check_symmetric(&s->vv, mass->values));
-  DVI_TRY(check_regular_mass(&s->vv, mass->values));
   s->mass_values = dvi__duplicate(mass->values, entries, sizeof(double));
-  return s->mass_values != NULL ? DVI_OK
-                                : dvi__fail(DVI_NO_MEMORY, "system: no memory for its mass");
+  if (s->mass_values == NULL) return dvi__fail(DVI_NO_MEMORY, "system: no memory for its mass");
+  if (s->mass_of != NULL && s->mass_of->mass_factor != NULL)
+    return dvi__linear_share(s->mass_of->mass_factor, NULL, &s->mass_factor);
+  DVI_TRY(check_symmetric(&s->vv, s->mass_values));
+  return factor_mass(s);
 }
 
 static dvi_status copy_diagonal_mass(dvi_system *s, const dvi_mass *mass)

@@ -20,17 +20,22 @@ static dvi_potential declared_potential(const dvi__potential_term *term)
   return potential;
 }
 
-static dvi_status make_part(const dvi_system *whole, int fast, dvi_mass mass, dvi_system **part)
+/* mass_of is the whole if the part has its mass, else NULL. */
+static dvi_status make_part(const dvi_system *whole, int fast, const dvi_system *mass_of,
+                            dvi_system **part)
 {
   dvi_potential *potentials = DVI_NEW(dvi_potential, whole->potential_count);
-  dvi_system_terms terms = {.dimension = whole->n, .mass = mass, .autonomous = whole->autonomous};
+  dvi_system_terms terms = {.dimension = whole->n,
+                            .mass = mass_of != NULL ? mass_of_system(mass_of)
+                                                    : (dvi_mass){.scalar = 1},
+                            .autonomous = whole->autonomous};
   *part = NULL;
   if (potentials == NULL) return dvi__fail(DVI_NO_MEMORY, "system: no memory for its parts");
   for (int k = 0; k < whole->potential_count; k++)
     if ((whole->potentials[k].callbacks.fast != 0) == fast)
       potentials[terms.potential_count++] = declared_potential(&whole->potentials[k]);
   if (terms.potential_count > 0) terms.potentials = potentials;
-  const dvi_status status = dvi_system_create(&terms, part);
+  const dvi_status status = dvi__system_create_part(&terms, mass_of, part);
   dvi__release(potentials);
   return status;
 }
@@ -69,7 +74,7 @@ dvi_status dvi__system_without_noise(const dvi_system *whole, int more, const dv
     for (int k = 0; k < whole->force_count; k++) force[k] = declared_force(&whole->forces[k]);
     for (int k = 0; k < more; k++) force[whole->force_count + k] = shaking[k];
     for (int k = 0; k < holonomics; k++) holonomic[k] = declared_holonomic(&whole->holonomics[k]);
-    status = dvi_system_create(
+    status = dvi__system_create_part(
         &(dvi_system_terms){.dimension = whole->n,
                             .mass = mass_of_system(whole),
                             .autonomous = whole->autonomous,
@@ -81,7 +86,7 @@ dvi_status dvi__system_without_noise(const dvi_system *whole, int more, const dv
                             .holonomic_count = holonomics,
                             .symmetries = whole->symmetry_count > 0 ? whole->symmetries : NULL,
                             .symmetry_count = whole->symmetry_count},
-        part);
+        whole, part);
   } else {
     (void)dvi__fail(status, "system: no memory for its parts");
   }
@@ -93,12 +98,12 @@ dvi_status dvi__system_without_noise(const dvi_system *whole, int more, const dv
 
 dvi_status dvi__system_slow_part(const dvi_system *whole, dvi_system **part)
 {
-  return make_part(whole, 0, (dvi_mass){.scalar = 1}, part);
+  return make_part(whole, 0, NULL, part);
 }
 
 dvi_status dvi__system_fast_part(const dvi_system *whole, dvi_system **part)
 {
-  return make_part(whole, 1, mass_of_system(whole), part);
+  return make_part(whole, 1, whole, part);
 }
 
 const char *dvi__system_fast_not_quadratic(const dvi_system *whole)

@@ -6,12 +6,12 @@
 /* Create a part of a system with a constant mass and without factors. The fast part has the mass
  * and the potentials that are declared fast. The slow part has the other potentials, and the mass
  * 1, because it stands for forces alone. The caller owns the part. Symmetries and invariants stay
- * with the whole. */
+ * with the whole, which must outlive the fast part, because both share the factor of the mass. */
 dvi_status dvi__system_slow_part(const dvi_system *whole, dvi_system **part);
 dvi_status dvi__system_fast_part(const dvi_system *whole, dvi_system **part);
 
 /* Create the system that has all terms but the noise and the watched invariants, and more forces.
- * The caller owns it. */
+ * The caller owns it, and the whole must outlive it. */
 dvi_status dvi__system_without_noise(const dvi_system *whole, int more, const dvi_force *shaking,
                                      dvi_system **part);
 

@@ -178,6 +178,8 @@ struct dvi_system {
   double mass_scalar;
   double *mass_diagonal;
   double *mass_values;              /* in the order of vv */
+  dvi__linear *mass_factor;         /* of mass_values if they are positive definite, or NULL */
+  const dvi_system *mass_of;        /* the system whose mass this one has, or NULL */
   dvi__lagrangian_term *lagrangian; /* general, of the one-form, or the Hamiltonian */
   dvi__constraint_term *constraint; /* constraints of a Hamiltonian, or NULL */
   dvi__potential_term *potentials;
@@ -211,6 +213,10 @@ struct dvi_system {
    * for component i), made with qq. */
   dvi__pattern qv, vv, qq, by_q, by_v;
 };
+
+/* dvi_system_create of a system that has the mass of another one, which must outlive it, or NULL. */
+dvi_status dvi__system_create_part(const dvi_system_terms *terms, const dvi_system *mass_of,
+                                   dvi_system **system);
 
 /* Give a lower bound of the entries of L_qq. A pattern that was not declared counts as full, and
  * that of a potential without a Hessian as empty. */

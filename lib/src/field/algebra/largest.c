@@ -13,6 +13,9 @@
 #include "field/algebra/ritz.h"
 #include "field/algebra/vectors.h"
 
+/* Conjugate gradients' relative residual, far below the thousandth that the bound may be off. */
+static const double tolerance_of_solutions = 1e-10;
+
 typedef struct lanczos {
   const dvi__pencil *pencil;
   dvi__definite inverse; /* of M */
@@ -110,7 +113,8 @@ static dvi_status run(lanczos *s, double *bound)
                      (long long)s->n);
   double **const vectors[] = {&s->q, &s->r, &s->Mq, &s->Mr, &s->last, &s->u};
   for (int i = 0; i < 6; i++) *vectors[i] = room + i * s->n;
-  dvi_status status = dvi__definite_create(s->pencil->M, 3, &s->inverse);
+  dvi_status status = dvi__definite_create(s->pencil->M, s->pencil->dimension, &s->inverse);
+  s->inverse.tolerance = tolerance_of_solutions;
   if (status == DVI_OK) status = iterate(s, bound);
   dvi__definite_clear(&s->inverse);
   dvi__release(room);

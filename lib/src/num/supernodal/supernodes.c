@@ -304,9 +304,9 @@ static void solve_backward(const dvi__panel *p, double *work, double *y)
     own[j] -= sum[j] + dot(width - j - 1, p->L + j * height + j + 1, own + j + 1);
 }
 
-void dvi__supernodes_solve(dvi__supernodes *s, const double *D, double *y)
+void dvi__supernodes_solve(const dvi__supernodes *s, const double *D, double *y, double *work)
 {
-  for (int i = 0; i < s->panels; i++) solve_forward(s->panel + i, s->product, y);
+  for (int i = 0; i < s->panels; i++) solve_forward(s->panel + i, work, y);
   for (int k = 0; k < s->of.n; k++) y[k] /= D[k];
-  for (int i = s->panels - 1; i >= 0; i--) solve_backward(s->panel + i, s->product, y);
+  for (int i = s->panels - 1; i >= 0; i--) solve_backward(s->panel + i, work, y);
 }

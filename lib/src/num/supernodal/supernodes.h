@@ -30,8 +30,9 @@ void dvi__supernodes_destroy(dvi__supernodes **supernodes);
  * n if all pivots are positive. */
 int dvi__supernodes_factor(dvi__supernodes *supernodes, const double *values, double *D);
 
-/* Replace y [n], in the order of elimination, by L^-T D^-1 L^-1 y. */
-void dvi__supernodes_solve(dvi__supernodes *supernodes, const double *D, double *y);
+/* Replace y [n], in the order of elimination, by L^-T D^-1 L^-1 y. work is [n]. */
+void dvi__supernodes_solve(const dvi__supernodes *supernodes, const double *D, double *y,
+                           double *work);
 
 /* Return the numbers that the factor stores. */
 double dvi__supernodes_entries(const dvi__supernodes *supernodes);

@@ -50,6 +50,7 @@ static dvi_status flow_series_initialise(dvi__flow_series *f, dvi__derivatives m
                      "series of the motion: no memory for degree %d in %d dimensions", f->degree,
                      f->n);
   if (s->mass_diagonal != NULL) return DVI_OK;
+  if (s->mass_factor != NULL) return dvi__linear_share(s->mass_factor, counters, &f->kinetic);
   DVI_TRY(dvi__linear_create(&s->vv, DVI__LINEAR_AUTO, counters, &f->kinetic));
   return s->mass_values != NULL ? dvi__linear_factor(f->kinetic, s->mass_values) : DVI_OK;
 }

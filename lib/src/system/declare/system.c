@@ -370,9 +370,17 @@ dvi_status dvi_system_create(const dvi_system_terms *terms, dvi_system **system)
   if (system == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "system: no place for the result");
   *system = NULL;
   if (terms == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "system: no terms");
+  return dvi__system_create_part(terms, NULL, system);
+}
+
+dvi_status dvi__system_create_part(const dvi_system_terms *terms, const dvi_system *mass_of,
+                                   dvi_system **system)
+{
+  *system = NULL;
   DVI_TRY(check_declared_terms(terms));
   dvi_system *made = DVI_NEW(dvi_system, 1);
   if (made == NULL) return refuse_memory_of_system();
+  made->mass_of = mass_of;
   const dvi_status status = system_fill(made, terms);
   if (status != DVI_OK) dvi_system_destroy(&made);
   *system = made;
@@ -415,6 +423,7 @@ void dvi_system_destroy(dvi_system **system)
   if (s->lagrangian != NULL) dvi__general_clear(s->lagrangian);
   dvi__release(s->lagrangian);
   dvi__constraint_clear(&s->constraint);
+  dvi__linear_destroy(&s->mass_factor);
   dvi__pattern_clear(&s->qq);
   dvi__pattern_clear(&s->qv);
   dvi__pattern_clear(&s->vv);

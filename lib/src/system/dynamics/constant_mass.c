@@ -20,6 +20,8 @@ static dvi_status prepare_mass(dvi__evaluator *e, dvi__derivatives most)
 {
   const dvi_system *system = e->system;
   if (system->mass_diagonal != NULL) return DVI_OK;
+  if (system->mass_factor != NULL)
+    return dvi__linear_share(system->mass_factor, e->counters, &e->velocity);
   DVI_TRY(dvi__prepare_velocity_hessian(e, most));
   return dvi__linear_factor(e->velocity, system->mass_values);
 }
