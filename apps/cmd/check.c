@@ -311,6 +311,8 @@ int check_command(int argc, char **argv)
   code = marches ? check_march(scene, r.method) : check_system(scene, r.method);
   if (code == DONE && !marches && r.method != NULL) density_warn("check", scene, r.method);
   if (code == DONE && !is_grid) scene_tell(scene);
+  if (code == DONE && !marches && r.method != NULL)
+    density_warn_step("check", scene, r.method, scene->h);
   if (code == DONE) density_warn_growth("check", scene);
   warn_unused(scene);
   problem_destroy(&scene);

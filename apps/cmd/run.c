@@ -124,6 +124,8 @@ static int run_integrator(run_request *request, const problem *scene)
   int code = open_paced(scene, request->method, &request->how, &integrator);
   if (code == DONE && !place_start(request, scene, integrator)) code = FAILED;
   if (code == DONE) code = complete_request(request, scene, dvi_integrator_time(integrator));
+  if (code == DONE && request->resume == NULL && request->how.transform == NULL)
+    density_warn_step("run", scene, request->method, request->h);
   if (code == DONE) code = (request->verify ? verify : record)(request, scene, integrator);
   dvi_integrator_destroy(&integrator);
   return code;

@@ -1,5 +1,6 @@
 #include "load/density.h"
 
+#include <dvi/diagnostics.h>
 #include <dvi/scene.h>
 #include <math.h>
 #include <stdio.h>
@@ -63,6 +64,35 @@ int64_t field_unknowns(const problem *scene)
   return unknowns;
 }
 
+/* Above this the Hessian at a state is full, or takes as long as the start of the run. */
+enum { UNKNOWNS_MOST = 100000 };
+
+/* Give the largest frequency at the start with all potentials, or 0 where the quadratic part alone
+ * has it already, whose bound the method's steps are held to. */
+static double fastest_at_start(const problem *scene)
+{
+  const dvi_density *density = density_of(scene);
+  double quadratic = 0.0, whole = 0.0;
+  if (density == NULL || scene->system == NULL || field_unknowns(scene) > UNKNOWNS_MOST) return 0.0;
+  if (dvi_density_fastest(density, &quadratic) != DVI_OK) return 0.0;
+  if (dvi_density_fastest_at(density, scene->q, &whole) != DVI_OK) return 0.0;
+  return whole > 1.002 * quadratic ? whole : 0.0;
+}
+
+/* A method is tried on a spring of that frequency. */
+void density_warn_step(const char *command, const problem *scene, const char *method, double h)
+{
+  const double omega = fastest_at_start(scene);
+  double turn, rate;
+  if (!(omega * fabs(h) >= 1.0) || !(omega * fabs(h) < 1e5)) return;
+  if (dvi_exchange(method, omega * fabs(h), &turn, &rate) != DVI_BAD_ARGUMENT) return;
+  complain(
+      "%s: %s is unstable with h = %g at t = 0, where all potentials together have frequencies "
+      "up to %.6g%s",
+      command, method, h, omega,
+      strncmp(method, "verlet", 6) == 0 ? "; take h below 2/omega, or midpoint" : "");
+}
+
 void density_tell(const problem *scene)
 {
   char text[TEXT_SIZE];
@@ -72,6 +102,11 @@ void density_tell(const problem *scene)
   if (density_of(scene) != NULL && dvi_density_fastest(density_of(scene), &omega) == DVI_OK &&
       omega > 0.0)
     (void)printf("largest frequency of the quadratic part: %.6g; verlet is stable below h = %.6g\n",
+                 omega, 2.0 / omega);
+  omega = fastest_at_start(scene);
+  if (omega > 0.0)
+    (void)printf("largest frequency with all potentials, at t = 0: %.6g; there verlet is stable "
+                 "below h = %.6g\n",
                  omega, 2.0 / omega);
 }
 

@@ -19,6 +19,10 @@ void density_warn(const char *command, const problem *scene, const char *method)
 /** Tell that small fields grow without bound, as those of a density with a wrong sign. */
 void density_warn_growth(const char *command, const problem *scene);
 
+/** Tell that a step is unstable at the start, by frequencies that only potentials have that depend
+ * on time or are not quadratic. A method refuses the others itself. */
+void density_warn_step(const char *command, const problem *scene, const char *method, double h);
+
 /** Return the number of unknowns of a field. */
 int64_t field_unknowns(const problem *scene);
 

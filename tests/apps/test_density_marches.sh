@@ -94,6 +94,7 @@ step: 0.05
 until: 1
 END
 expect 0 'an unstable step' run parametric.yaml --final
+says err 'verlet is unstable with h = 0.05 at t = 0' 'the start'
 says err 'as those of an unstable step do' 'the growth'
 expect 0 'a stable step' run parametric.yaml --final --h 0.01
 test ! -s err || fail 'a stable step is silent'

@@ -204,6 +204,47 @@ START_TEST(roundoff_of_a_large_constant_is_no_error)
 }
 END_TEST
 
+/* The spring q_0^2/2 as what is left of large terms, as a Fourier field's potential beside its
+ * matrix is. */
+static int difference_value(double t, const double *q, double *V, void *user)
+{
+  volatile double large = 0.5 * q[0] * q[0] + 1e8;
+  (void)t, (void)user;
+  *V = large - 1e8;
+  return 0;
+}
+
+static int difference_gradient(double t, const double *q, double *V_q, void *user)
+{
+  (void)t;
+  memset(V_q, 0, SITES * sizeof *V_q);
+  V_q[0] = q[0] * (1 + *(const double *)user);
+  return 0;
+}
+
+static dvi_status check_difference(double lie)
+{
+  static const int start[SITES + 1] = {0, 1, 1, 1, 1, 1, 1}, row[] = {0};
+  const dvi_potential spring = {.value = difference_value,
+                                .gradient = difference_gradient,
+                                .qq = {.start = start, .row = row},
+                                .user = &lie};
+  dvi_system *s = make_system(&(dvi_system_terms){
+      .dimension = SITES, .mass.scalar = 1, .potentials = &spring, .potential_count = 1});
+  const double q[SITES] = {0.01};
+  const dvi_status status = dvi_system_check(s, 0, q, q, 0, NULL);
+  dvi_system_destroy(&s);
+  return status;
+}
+
+START_TEST(roundoff_of_terms_that_cancel_in_a_value_is_no_error)
+{
+  ck_assert_msg(check_difference(0) == DVI_OK, "%s", dvi_last_error());
+  /* roundoff of 1e-8 over a step of 1e-4 is 1e-4, and the gradient is 1e-2 */
+  ck_assert_int_eq(check_difference(0.5), DVI_BAD_ARGUMENT);
+}
+END_TEST
+
 /* Gravity is a linear potential with an empty pattern, and a constant whose roundoff shows in
  * second differences of the value. */
 static int weight_value(double t, const double *q, double *V, void *user)
@@ -296,6 +337,7 @@ SUITE(check)
   tcase_add_test(tests, a_wrong_gradient_is_blamed_before_the_hessian_that_disagrees_with_it);
   tcase_add_test(tests, roundoff_in_vanishing_derivatives_is_no_error);
   tcase_add_test(tests, roundoff_of_a_large_constant_is_no_error);
+  tcase_add_test(tests, roundoff_of_terms_that_cancel_in_a_value_is_no_error);
   tcase_add_test(tests, an_empty_pattern_is_right_for_a_linear_potential);
   tcase_add_test(tests, a_callback_that_fails_ends_the_check_with_its_status);
   tcase_add_test(tests, the_tolerance_decides);

@@ -134,6 +134,17 @@ dvi_status dvi_density_matrix(const dvi_density *density, dvi_field_operator nam
  *  @retval (others)         as dvi_matrix_modes */
 dvi_status dvi_density_fastest(const dvi_density *density, double *omega);
 
+/** Estimate the largest angular frequency of small oscillations about a state at t = 0, with the
+ *  Hessian of all parts without rates, those that depend on time or are not quadratic, too. Without
+ *  such parts it is that of dvi_density_fastest.
+ *
+ *  @param      q      [unknowns] coordinates
+ *  @param[out] omega  0 if nothing oscillates
+ *  @retval DVI_BAD_ARGUMENT  a pointer is NULL
+ *  @retval DVI_UNSUPPORTED   the field has no mass, or its full Hessian has too many unknowns
+ *  @retval (others)          as the callbacks fail */
+dvi_status dvi_density_fastest_at(const dvi_density *density, const double *q, double *omega);
+
 /** Find the least eigenvalue of the quadratic parts against the mass, if it is negative, and 0
  *  otherwise. With lambda < 0 a small field can grow as exp(sqrt(-lambda) t), and without
  *  potentials that stop it the energy is not bounded from below. Quadratic parts whose density is

@@ -493,6 +493,7 @@ START_TEST(questions_without_an_answer_are_refused)
   check_words("there is no operator 5");
   ck_assert_int_eq(dvi_density_fastest(d, &number), DVI_UNSUPPORTED);
   check_words("the field has no mass, and no frequencies");
+  ck_assert_int_eq(dvi_density_fastest_at(d, U, &number), DVI_UNSUPPORTED);
   ck_assert_int_eq(dvi_density_modes(d, NULL, NULL, &number, NULL), DVI_UNSUPPORTED);
   check_words("the field has no mass");
   ck_assert_int_eq(dvi_density_system_terms(d, &terms), DVI_UNSUPPORTED);
@@ -501,6 +502,7 @@ START_TEST(questions_without_an_answer_are_refused)
   check_words("no momenta");
   ck_assert_int_eq(dvi_density_matrix(NULL, DVI_FIELD_MASS, &matrix), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_density_fastest(NULL, &number), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_density_fastest_at(d, NULL, &number), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_density_modes(NULL, NULL, NULL, &number, NULL), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_density_system_terms(NULL, &terms), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_density_project(NULL, NULL, NULL, NULL, NULL, NULL), DVI_BAD_ARGUMENT);

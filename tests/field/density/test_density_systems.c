@@ -98,6 +98,24 @@ START_TEST(fastest_frequency_is_that_of_the_elements)
 }
 END_TEST
 
+/* V'' = 3 u^2 - 1 of the double well is 11 at u = 2, -1 at u = 0, and adds to the 4 of elements of
+ * length 1. */
+START_TEST(fastest_frequency_at_a_state_has_all_potentials)
+{
+  const dvi_density_part parts[] = {kinetic_part, elastic_part, double_well_part};
+  const char *const kind = "fem:degree=1,cells=32,lumped=yes";
+  density_field field = make_density(make_density_space(kind, 1, 0, 32, 1), parts, 3, NULL, 0);
+  for (int u = 0; u <= 2; u += 2) {
+    const double square = 4 + 3 * u * u - 1;
+    double q[32], omega;
+    for (int i = 0; i < 32; i++) q[i] = u;
+    ck_assert_int_eq(dvi_density_fastest_at(field.density, q, &omega), DVI_OK);
+    ck_assert(omega * omega > square - 1e-9 && omega * omega < square * 1.0022);
+  }
+  end_density(&field);
+}
+END_TEST
+
 /* One Fourier series of quadratic energies: u = cos x, u_t = sin x on a circle has the energy
  * pi (1 + 1)/2, which elements of degree 4 have to 1e-7. */
 static int cosine(int64_t count, const double *x, double *f, void *user)
@@ -423,6 +441,7 @@ SUITE(density_systems)
   tcase_add_test(tests, callbacks_agree_with_differences_on_circles);
   tcase_add_test(tests, callbacks_agree_with_differences_on_squares);
   tcase_add_test(tests, fastest_frequency_is_that_of_the_elements);
+  tcase_add_test(tests, fastest_frequency_at_a_state_has_all_potentials);
   tcase_add_test(tests, energy_is_that_of_the_continuum);
   tcase_add_test(tests, fixed_ends_hold_a_line);
   tcase_add_test(tests, fixed_sides_hold_a_saddle);

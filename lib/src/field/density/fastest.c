@@ -1,5 +1,5 @@
-/* The largest frequency of the quadratic parts of a field. With a mass it is that of
- * M u'' = -K u. With a constant two-form Omega it is that of Omega u' = K u. */
+/* The largest frequency of a field, of its quadratic parts or of all about a state. With a mass it
+ * is that of M u'' = -K u. With a constant two-form Omega it is that of Omega u' = K u. */
 #include <math.h>
 
 #include "core/memory.h"
@@ -21,18 +21,17 @@ static int has_positive_diagonal(const dvi__csr *matrix)
   return 1;
 }
 
-static dvi_status find_of_mass(dvi_density *density)
+static dvi_status find_of_mass(const dvi_density *density, const dvi_matrix *K, double *omega)
 {
-  const dvi_matrix K = dvi__csr_view(&density->stiffness, 1);
   dvi_matrix M;
   DVI_TRY(dvi_density_matrix(density, DVI_FIELD_MASS, &M));
-  const dvi__pencil pencil = {.K = &K, .M = &M, .dimension = density->dimension};
+  const dvi__pencil pencil = {.K = K, .M = &M, .dimension = density->dimension};
   if (!has_positive_diagonal(&density->mass)) return DVI_OK;
   double bound = 0;
   const dvi_status status = dvi__largest_eigenvalue(&pencil, &bound);
   if (status == DVI_SINGULAR) return DVI_OK; /* an indefinite mass has no largest frequency */
-  const double roundoff = 1e-12 * dvi__largest_entry(&K) / dvi__largest_entry(&M);
-  density->fastest = isfinite(bound) && bound > roundoff ? sqrt(bound) : 0;
+  const double roundoff = 1e-12 * dvi__largest_entry(K) / dvi__largest_entry(&M);
+  *omega = isfinite(bound) && bound > roundoff ? sqrt(bound) : 0;
   return status;
 }
 
@@ -99,11 +98,26 @@ static dvi_status find_of_two_form(dvi_density *density)
   return status;
 }
 
-/* ---- both ---- */
+/* ---- of a field ---- */
 
 dvi_status dvi__density_find_fastest(dvi_density *density)
 {
   if (density->quadratic.parts == 0) return DVI_OK;
-  if (density->mass.rows > 0) return find_of_mass(density);
+  const dvi_matrix K = dvi__csr_view(&density->stiffness, 1);
+  if (density->mass.rows > 0) return find_of_mass(density, &K, &density->fastest);
   return density->one_form.parts > 0 ? find_of_two_form(density) : DVI_OK;
+}
+
+dvi_status dvi_density_fastest_at(const dvi_density *density, const double *q, double *omega)
+{
+  if (q == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "density: a state is needed");
+  DVI_TRY(dvi_density_fastest(density, omega));
+  dvi__csr hessian = {0};
+  if (density->potentials == 0) return DVI_OK;
+  DVI_TRY(dvi__density_hessian(density, q, &hessian));
+  const dvi_matrix K = dvi__csr_view(&hessian, 1);
+  *omega = 0;
+  const dvi_status status = find_of_mass(density, &K, omega);
+  dvi__csr_clear(&hessian);
+  return status;
 }

@@ -79,6 +79,40 @@ static double largest_component(int n, const double *x)
 
 /* ---- gradients ---- */
 
+/* Measure the roundoff of values near x, which is above that of their size where terms cancel
+ * within a callback. Fourth differences over small parts of the steps have nothing else in them. */
+static dvi_status measure_roundoff(dvi__check *c, dvi__batch_value value, const void *function,
+                                   const double *x, double *roundoff)
+{
+  enum { TRIES = 4, PARTS = 64 };
+  static const double weight[5] = {1, -4, 6, -4, 1}; /* the sum of their squares is near 8^2 */
+  const dvi__differences *d = &c->differences;
+  *roundoff = 0;
+  for (int k = 0; k < TRIES; k++) {
+    double difference = 0, V;
+    for (int m = 0; m < 5; m++) {
+      for (int i = 0; i < c->n; i++)
+        d->moved[i] = x[i] + (m - 2) * ((i + k) % 3 - 1) * d->step[i] / (PARTS + k);
+      DVI_TRY(value(function, 1, d->moved, &V));
+      difference += weight[m] * V;
+    }
+    *roundoff = fmax(*roundoff, fabs(difference) / 8);
+  }
+  return DVI_OK;
+}
+
+/* Give the magnitude of values whose rounding explains that of the values near x. */
+static dvi_status find_magnitude(dvi__check *c, dvi__batch_value value, const void *function,
+                                 const double *x, double *magnitude)
+{
+  const dvi__differences *d = &c->differences;
+  double roundoff;
+  *magnitude = fmax(fabs(d->plus[0]), fabs(d->minus[0]));
+  DVI_TRY(measure_roundoff(c, value, function, x, &roundoff));
+  *magnitude = fmax(*magnitude, roundoff / (8 * DBL_EPSILON));
+  return DVI_OK;
+}
+
 static dvi_status check_gradient(dvi__check *c, dvi__batch_value value, const void *function,
                                  const double *x, const double *given, const char *term,
                                  const char *name)
@@ -86,7 +120,8 @@ static dvi_status check_gradient(dvi__check *c, dvi__batch_value value, const vo
   block b = {.term = term, .kind = "potential", .name = name};
   const dvi__differences *d = &c->differences;
   DVI_TRY(dvi__difference_gradient(value, function, &c->differences, c->n, 1, x, c->column[0]));
-  const double magnitude = fmax(fabs(d->plus[0]), fabs(d->minus[0]));
+  double magnitude;
+  DVI_TRY(find_magnitude(c, value, function, x, &magnitude));
   for (int i = 0; i < c->n; i++) {
     compare_entry(&b, i, -1, given[i], c->column[0][i], noise_of(magnitude, d->step[i]),
                   &b.on_pattern);
@@ -102,7 +137,8 @@ static dvi_status measure_gradient_noise(dvi__check *c, dvi__batch_value value,
 {
   const dvi__differences *d = &c->differences;
   DVI_TRY(dvi__difference_gradient(value, function, &c->differences, c->n, 1, x, c->column[0]));
-  const double magnitude = fmax(fabs(d->plus[0]), fabs(d->minus[0]));
+  double magnitude;
+  DVI_TRY(find_magnitude(c, value, function, x, &magnitude));
   for (int i = 0; i < c->n; i++)
     c->gradient_noise = fmax(c->gradient_noise, noise_of(magnitude, d->step[i]));
   return DVI_OK;
