@@ -39,15 +39,33 @@ void density_warn(const char *command, const problem *scene, const char *method)
            command, method);
 }
 
-/* Potentials beside the quadratic one, and general Lagrangians, may stop what grows. */
-void density_warn_growth(const char *command, const problem *scene)
+/* One entry of the diagonal tells the sign of a definite mass. */
+static bool has_negative_mass(const dvi_density *density)
+{
+  dvi_matrix M;
+  if (dvi_density_matrix(density, DVI_FIELD_MASS, &M) != DVI_OK || M.rows == 0) return false;
+  int64_t e = 0;
+  while (M.column != NULL && M.column[e] != 0 && e + 1 < M.start[1]) e++;
+  return M.value[e] < 0.0;
+}
+
+/* Potentials beside the quadratic one, and general Lagrangians, may stop what grows, if the mass is
+ * not negative. */
+bool density_grows(const problem *scene, double *least)
 {
   const dvi_density *density = density_of(scene);
   dvi_system_terms terms;
-  double least = 0.0;
-  if (density == NULL || dvi_density_system_terms(density, &terms) != DVI_OK) return;
-  if (terms.potential_count > 1 || terms.lagrangian != NULL) return;
-  if (dvi_density_least(density, &least) != DVI_OK || !(least < 0.0)) return;
+  *least = 0.0;
+  if (density == NULL || dvi_density_system_terms(density, &terms) != DVI_OK) return false;
+  if (terms.lagrangian != NULL || (terms.potential_count > 1 && !has_negative_mass(density)))
+    return false;
+  return dvi_density_least(density, least) == DVI_OK && *least < 0.0;
+}
+
+void density_warn_growth(const char *command, const problem *scene)
+{
+  double least;
+  if (!density_grows(scene, &least)) return;
   complain("%s: the energy is not bounded from below: the least omega^2 of the quadratic part is "
            "%.6g, and modes grow as exp(%.6g t); is a sign of the density wrong, as in "
            "u'^2/2 - d(u,x)^2/2?",

@@ -16,6 +16,9 @@ bool has_field(const problem *scene);
  * methods are for fields that are too large for vprk. */
 void density_warn(const char *command, const problem *scene, const char *method);
 
+/** Return whether small fields grow without bound, with the least omega^2. */
+bool density_grows(const problem *scene, double *least);
+
 /** Tell that small fields grow without bound, as those of a density with a wrong sign. */
 void density_warn_growth(const char *command, const problem *scene);
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cli/command.h"
+#include "load/density.h"
 
 enum { ADVICE_SIZE = 128, GOOD_ORDER = 4 };
 
@@ -96,11 +97,13 @@ void energy_tell(energy_watch *watch, const run_request *request)
   const double most = longest_step(watch, request);
   const int order = dvi_integrator_order(watch->integrator);
   char advice[ADVICE_SIZE];
+  double least;
   energy_advise(watch, request, verdict.ratio, most, advice);
   complain("run: the energy error of %s with --h %g passed %g %% of the %s at t = %.6g, and was "
            "%.3g %% of it at t = %.6g",
            request->method, request->h, 100.0 * watch->bound, energy_scale_name(watch->scene),
            verdict.passed, 100.0 * verdict.ratio, verdict.t);
+  if (density_grows(watch->scene, &least)) return; /* no step helps */
   complain("run: try --h %g%s; --verify tells how many digits are right",
            better_step(request, order, verdict.ratio, most), advice);
 }

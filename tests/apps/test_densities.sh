@@ -119,6 +119,13 @@ says err 'run: the energy is not bounded from below: the least omega^2 .* is -' 
 expect 0 'a field that grows' check wrong.yaml --method midpoint
 says err 'check: the energy is not bounded from below' 'a warning'
 says out "potential 'quadratic' is not bounded from below: its least omega^2 is -" 'the fact'
+sed "s/^density.*/density: (-u'^2 - d(u,x)^2)\/2/; s/^step.*/step: 0.01/; s/^sweep.*//" \
+  pulse.yaml >kinetic.yaml
+expect 0 'a negative mass' check kinetic.yaml --method midpoint
+says err 'check: the energy is not bounded from below.*is a sign of the density wrong' 'a warning'
+expect 0 'a negative mass' run kinetic.yaml --method verlet --final
+says err 'is a sign of the density wrong' 'a warning'
+! grep -q 'try --h' err || fail 'no step helps a field that grows'
 # Higgs: a potential may hold what grows.
 sed "s/^density.*/density: u'^2\/2 - d(u,x)^2\/2 + u^2\/2 - u^4\/4/; s/^sweep.*//" \
   pulse.yaml >wells.yaml

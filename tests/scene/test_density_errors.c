@@ -83,6 +83,18 @@ START_TEST(sections_of_densities_belong_together)
 }
 END_TEST
 
+START_TEST(a_start_agrees_with_what_is_fixed)
+{
+  refused(LINE WAVE "boundary: {left: {fixed: cos(t)}}\ninitial: {u': 0}\n",
+          ":6:10:", "the start of u is 0 at 'left', where 1 is fixed at t = 0; they must agree");
+  refused(LINE WAVE "boundary: {left: {fixed: cos(t)}}\n", ":5:11:", "the start of u is 0");
+  refused(LINE WAVE "boundary: fixed\ninitial: {u: cos(pi*x)}\n",
+          ":6:10:", "the start of u is 1 at 'boundary', where 0 is fixed");
+  (void)open_scene(LINE WAVE "boundary: fixed\ninitial: {u: exp(-40*(x - 0.5)^2)}\n");
+  (void)open_scene(LINE WAVE "boundary: {left: {fixed: 1}}\n"); /* of a static state */
+}
+END_TEST
+
 START_TEST(axes_and_spaces_are_as_described)
 {
   refused("domain: {x: [1, 0]}\n" WAVE, ":1:17:", "the ends of an axis ascend");
@@ -198,6 +210,7 @@ SUITE(density_errors)
   tcase_add_test(tests, derivatives_are_along_axes_of_fields);
   tcase_add_test(tests, a_density_moves_all_of_its_fields);
   tcase_add_test(tests, sections_of_densities_belong_together);
+  tcase_add_test(tests, a_start_agrees_with_what_is_fixed);
   tcase_add_test(tests, axes_and_spaces_are_as_described);
   tcase_add_test(tests, fields_are_numbers_and_vectors);
   tcase_add_test(tests, conditions_are_of_parts_and_do_not_contradict);

@@ -148,10 +148,11 @@ dvi_status dvi_density_fastest_at(const dvi_density *density, const double *q, d
 /** Find the least eigenvalue of the quadratic parts against the mass, if it is negative, and 0
  *  otherwise. With lambda < 0 a small field can grow as exp(sqrt(-lambda) t), and without
  *  potentials that stop it the energy is not bounded from below. Quadratic parts whose density is
- *  positive semidefinite at each point take no matrices.
+ *  positive semidefinite at each point take no matrices. A negative definite mass, as of a kinetic
+ *  part with a wrong sign, has the eigenvalues of both with the other sign.
  *
  *  @retval DVI_UNSUPPORTED  the field has no mass, or too many unknowns in three dimensions
- *  @retval DVI_SINGULAR     the mass is not positive definite
+ *  @retval DVI_SINGULAR     the mass is indefinite
  *  @retval (others)         as dvi_matrix_modes */
 dvi_status dvi_density_least(const dvi_density *density, double *lambda);
 

@@ -2,7 +2,8 @@
  *
  * K is a sum over points, and positive semidefinite if the density is at each of them. Only where
  * this does not hold K + s M is factored, for growing s until it is positive definite. Then -s is
- * below all eigenvalues, and not far from the least one, which Lanczos' method finds. */
+ * below all eigenvalues, and not far from the least one, which Lanczos' method finds. A negative
+ * mass has the eigenvalues of -K and -M. */
 #include <math.h>
 #include <string.h>
 
@@ -38,9 +39,10 @@ static int is_semidefinite(int n, double (*A)[DVI_JETS_MAX])
   return 1;
 }
 
-/* Second derivatives of a quadratic part are those at 0. A part that fails counts as indefinite,
+/* Second derivatives of a quadratic part are those at 0, times a sign. A part that fails counts as indefinite,
  * and the matrices decide. */
-static int is_semidefinite_at(const dvi_density *density, const dvi__density_part *part, int64_t k)
+static int is_semidefinite_at(const dvi_density *density, const dvi__density_part *part, int64_t k,
+                              double sign)
 {
   const dvi_density_part *given = &part->given;
   double x[DVI_AXES_MAX], z[DVI_JETS_MAX] = {0}, l_zz[PAIRS_MOST] = {0};
@@ -49,17 +51,17 @@ static int is_semidefinite_at(const dvi_density *density, const dvi__density_par
   if (given->density(1, 0, x, z, NULL, NULL, l_zz, given->user) != 0) return 0;
   for (int e = 0; e < given->pairs; e++) {
     const int a = given->pair[e][0], b = given->pair[e][1];
-    A[a][b] = A[b][a] = -l_zz[e];
+    A[a][b] = A[b][a] = -sign * l_zz[e];
   }
   return is_semidefinite(given->variables, A);
 }
 
-static int is_semidefinite_by_points(const dvi_density *density)
+static int is_semidefinite_by_points(const dvi_density *density, double sign)
 {
   for (int p = 0; p < density->quadratic.parts; p++) {
     const dvi__density_part *part = density->quadratic.part[p];
     for (int64_t k = 0; k < part->points; k++)
-      if (!is_semidefinite_at(density, part, k)) return 0;
+      if (!is_semidefinite_at(density, part, k, sign)) return 0;
   }
   return 1;
 }
@@ -86,19 +88,48 @@ static dvi_status factor_shifted(const dvi_matrix *K, const dvi__csr *M, double 
   return status;
 }
 
-static dvi_status find_least(const dvi_density *density, double *lambda)
+static dvi_status find_least(const dvi__csr *stiffness, const dvi__csr *mass, double *lambda)
 {
-  const dvi_matrix K = dvi__csr_view(&density->stiffness, 1), M = dvi__csr_view(&density->mass, 1);
+  const dvi_matrix K = dvi__csr_view(stiffness, 1), M = dvi__csr_view(mass, 1);
   const double most = dvi__largest_entry(&K);
   double s = smallest_shift * most / dvi__largest_entry(&M);
   dvi_status status = most > 0 ? DVI_SINGULAR : DVI_OK;
   int tries = 0;
   for (; status == DVI_SINGULAR && tries < TRIES; tries++, s *= growth)
-    status = factor_shifted(&K, &density->mass, s);
+    status = factor_shifted(&K, mass, s);
   if (status != DVI_OK || tries < 2) return status;
   const dvi_modes_options options = {
       .size = sizeof options, .count = 1, .shift = -s / growth, .dimension = 2};
   return dvi_matrix_modes(&K, &M, &options, lambda, NULL);
+}
+
+static dvi_status copy_negated(const dvi__csr *from, dvi__csr *to)
+{
+  const dvi_matrix view = dvi__csr_view(from, 1);
+  DVI_TRY(dvi__csr_copy(&view, to));
+  for (int64_t e = 0; e < to->start[to->rows]; e++) to->value[e] = -to->value[e];
+  return DVI_OK;
+}
+
+static dvi_status find_least_negated(const dvi_density *density, double *lambda)
+{
+  dvi__csr K = {0}, M = {0};
+  dvi_status status = copy_negated(&density->stiffness, &K);
+  if (status == DVI_OK) status = copy_negated(&density->mass, &M);
+  if (status == DVI_OK) status = find_least(&K, &M, lambda);
+  dvi__csr_clear(&K);
+  dvi__csr_clear(&M);
+  return status;
+}
+
+/* A mass without a positive entry on its diagonal is negative, or indefinite and then refused. */
+static int is_mass_negative(const dvi__csr *mass)
+{
+  for (int64_t i = 0; i < mass->rows; i++) {
+    const int64_t place = dvi__csr_find(mass, i, (int)i);
+    if (place < 0 || !(mass->value[place] < 0)) return 0;
+  }
+  return 1;
 }
 
 dvi_status dvi_density_least(const dvi_density *density, double *lambda)
@@ -108,13 +139,16 @@ dvi_status dvi_density_least(const dvi_density *density, double *lambda)
   if (density->mass.rows == 0)
     return dvi__fail(DVI_UNSUPPORTED, "density: the field has no mass, and no frequencies");
   *lambda = 0;
-  if (density->quadratic.parts == 0 || is_semidefinite_by_points(density)) return DVI_OK;
+  const int is_negative = is_mass_negative(&density->mass);
+  if (density->quadratic.parts == 0 || is_semidefinite_by_points(density, is_negative ? -1 : 1))
+    return DVI_OK;
   if (dvi__definite_iterates(density->unknowns, density->dimension))
     return dvi__fail(DVI_UNSUPPORTED,
                      "density: the least eigenvalue of %lld unknowns in three dimensions takes too "
                      "long: ask dvi_density_modes for those near a shift",
                      (long long)density->unknowns);
-  DVI_TRY(find_least(density, lambda));
+  DVI_TRY(is_negative ? find_least_negated(density, lambda)
+                      : find_least(&density->stiffness, &density->mass, lambda));
   if (*lambda > 0) *lambda = 0;
   return DVI_OK;
 }

@@ -223,7 +223,7 @@ static bool make_start(dvi_scene *scene)
   if (good) {
     const dvi_status status = dvi_density_project(s->density, U, U + coefficients, scene->q,
                                                   scene->v, s->is_static ? NULL : scene->p);
-    good = status == DVI_OK || complain(scene, status);
+    good = (status == DVI_OK || complain(scene, status)) && dvi__density_check_ends(scene, U);
   }
   dvi__heap_free(U);
   return good;

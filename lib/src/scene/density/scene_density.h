@@ -172,6 +172,9 @@ bool dvi__refuse_order(dvi_scene *scene, const dvi__local *local, int k, int axi
 /* Give the coefficients [components*functions] of the start and of its rate. */
 bool dvi__density_start(dvi_scene *scene, double *U, double *rate);
 
+/* Refuse a section initial, of coefficients U, that is off the values that are fixed. */
+bool dvi__density_check_ends(dvi_scene *scene, const double *U);
+
 /* Interpolate functions of[components], which may be NULL, at time t into
  * U [components*functions]. */
 dvi_status dvi__density_interpolate(const struct dvi__scene_density *s, dvi__local *const *of,
