@@ -27,7 +27,8 @@ void growth_watch_step(growth_watch *w)
 {
   w->steps++;
   if (!w->is_on || w->steps < FIRST_STEP || !energy_look_due(w->steps)) return;
-  const double size = sum_of_sizes(w), least = w->steps <= ENERGY_EVERY_STEP ? step_factor : look_factor,
+  const double size = sum_of_sizes(w),
+               least = w->steps <= ENERGY_EVERY_STEP ? step_factor : look_factor,
                factor = w->last > 0.0 ? size / w->last : 1.0;
   const bool grows = factor > least && isfinite(factor);
   if (!grows) w->from = dvi_integrator_time(w->integrator);
