@@ -214,7 +214,8 @@ struct dvi_system {
   dvi__pattern qv, vv, qq, by_q, by_v;
 };
 
-/* dvi_system_create of a system that has the mass of another one, which must outlive it, or NULL. */
+/* Create a system like dvi_system_create. It has the mass of another system, which must outlive it
+ * and whose factor it shares, or one of its own if that is NULL. */
 dvi_status dvi__system_create_part(const dvi_system_terms *terms, const dvi_system *mass_of,
                                    dvi_system **system);
 

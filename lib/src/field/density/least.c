@@ -45,8 +45,11 @@ static int is_semidefinite_at(const dvi_density *density, const dvi__density_par
                               double sign)
 {
   const dvi_density_part *given = &part->given;
-  double x[DVI_AXES_MAX], z[DVI_JETS_MAX] = {0}, l_zz[PAIRS_MOST] = {0};
-  double A[DVI_JETS_MAX][DVI_JETS_MAX] = {{0}};
+  const size_t variables = (size_t)given->variables, pairs = (size_t)given->pairs;
+  double x[DVI_AXES_MAX], z[DVI_JETS_MAX], l_zz[PAIRS_MOST], A[DVI_JETS_MAX][DVI_JETS_MAX];
+  memset(z, 0, variables * sizeof *z);
+  memset(l_zz, 0, pairs * sizeof *l_zz);
+  for (size_t i = 0; i < variables; i++) memset(A[i], 0, variables * sizeof A[i][0]);
   for (int d = 0; d < density->dimension; d++) x[d] = part->x[d * part->points + k];
   if (given->density(1, 0, x, z, NULL, NULL, l_zz, given->user) != 0) return 0;
   for (int e = 0; e < given->pairs; e++) {
