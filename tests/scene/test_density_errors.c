@@ -95,6 +95,15 @@ START_TEST(a_start_agrees_with_what_is_fixed)
 }
 END_TEST
 
+START_TEST(a_start_has_a_finite_energy)
+{
+  check_refused(LINE WAVE "initial: {u: 1e160*x}\n", DVI_NOT_FINITE, ":5:10:",
+                "the start of u is 1.25e+159 at x = 0.125, and its energy would overflow");
+  check_refused(LINE WAVE "initial: {u': -1e200}\n", DVI_NOT_FINITE,
+                ":5:10:", "the start of u' is -1e+200 at x = 0, ");
+}
+END_TEST
+
 START_TEST(axes_and_spaces_are_as_described)
 {
   refused("domain: {x: [1, 0]}\n" WAVE, ":1:17:", "the ends of an axis ascend");
@@ -211,6 +220,7 @@ SUITE(density_errors)
   tcase_add_test(tests, a_density_moves_all_of_its_fields);
   tcase_add_test(tests, sections_of_densities_belong_together);
   tcase_add_test(tests, a_start_agrees_with_what_is_fixed);
+  tcase_add_test(tests, a_start_has_a_finite_energy);
   tcase_add_test(tests, axes_and_spaces_are_as_described);
   tcase_add_test(tests, fields_are_numbers_and_vectors);
   tcase_add_test(tests, conditions_are_of_parts_and_do_not_contradict);
