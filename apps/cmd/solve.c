@@ -209,7 +209,8 @@ static void hint_at_ground(const problem *scene, const dvi_density *density, con
   double most = 0.0;
   for (int64_t i = 0; i < density_coefficients(density); i++) most = fmax(most, fabs(U[i]));
   if (most < nothing && dvi_scene_schroedinger(scene->scene) != NULL)
-    complain("solve: this state is psi = 0; 'solve: ground' in the scene asks for the ground state");
+    complain(
+        "solve: this state is psi = 0; 'solve: ground' in the scene asks for the ground state");
 }
 
 static int solve_static(const solve_request *r, const problem *scene, double *U)

@@ -55,8 +55,8 @@ int density_judge(const char *command, const problem *scene, const char *method)
                                "split:order=4, gauss:stages=2 and midpoint take fields of any size",
                                command)
                  : DONE;
-  complain("%s: %s does not keep the norm of the wave function; midpoint, gauss:stages=2%s", command,
-           method, large ? " and split:order=4 do" : ", split:order=4 and vprk do");
+  complain("%s: %s does not keep the norm of the wave function; midpoint, gauss:stages=2%s",
+           command, method, large ? " and split:order=4 do" : ", split:order=4 and vprk do");
   return takes_system(scene, method) ? DONE : USAGE;
 }
 

@@ -91,6 +91,9 @@ START_TEST(a_start_agrees_with_what_is_fixed)
   refused(LINE WAVE "boundary: fixed\ninitial: {u: cos(pi*x)}\n",
           ":6:10:", "the start of u is 1 at 'boundary', where 0 is fixed");
   (void)open_scene(LINE WAVE "boundary: fixed\ninitial: {u: exp(-40*(x - 0.5)^2)}\n");
+  refused("domain: {x: [0, 1]}\nspace: fem:degree=1,cells=4\nfields: {u: scalar}\n" WAVE
+          "moving: {mu: 1}\nboundary: {right: {fixed: 2}}\ninitial: {u: x}\n",
+          ":7:10:", "the start of u is 1 at x = 1, where 2 is fixed");
   (void)open_scene(LINE WAVE "boundary: {left: {fixed: 1}}\n"); /* of a static state */
 }
 END_TEST
