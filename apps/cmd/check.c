@@ -309,7 +309,7 @@ int check_command(int argc, char **argv)
   (void)printf("%s: %s\n", scene->name, scene->summary);
   const bool marches = is_grid || dvi_scene_marches(scene->scene, r.method);
   code = marches ? check_march(scene, r.method) : check_system(scene, r.method);
-  if (code == DONE && !marches && r.method != NULL) density_warn("check", scene, r.method);
+  if (code == DONE && !marches && r.method != NULL) code = density_judge("check", scene, r.method);
   if (code == DONE && !is_grid) scene_tell(scene);
   if (code == DONE && !marches && r.method != NULL)
     density_warn_step("check", scene, r.method, scene->h);

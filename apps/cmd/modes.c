@@ -149,8 +149,13 @@ static int find_states(const modes_request *r, const problem *scene,
 static int find_spectrum(const modes_request *r, const problem *scene, const dvi_density *density)
 {
   const dvi_schroedinger *equation = dvi_scene_schroedinger(scene->scene);
-  if (equation != NULL && isnan(r->near) && !r->at_static_state)
-    return find_states(r, scene, equation);
+  if (equation != NULL && r->at_static_state)
+    return usage_error("modes: --static is not for schroedinger, whose modes are its stationary "
+                       "states; dvi solve finds the ground state with 'solve: ground'");
+  if (equation != NULL && !isnan(r->near))
+    return usage_error("modes: --near is not for schroedinger, whose states are found from the "
+                       "lowest one on; --count K finds more");
+  if (equation != NULL) return find_states(r, scene, equation);
   const size_t all = (size_t)density_coefficients(density), count = (size_t)r->count;
   const dvi_modes_options options = {
       .size = sizeof options, .count = (int)r->count, .shift = isnan(r->near) ? 0.0 : r->near};

@@ -270,7 +270,7 @@ static int run_problem(run_request *request, const char *name)
   scene_warn("run", scene);
   if (request->verify) code = refuse_noise("run: --verify", scene);
   if (code == DONE) code = open_wish("run", scene, &request->method);
-  if (code == DONE) density_warn("run", scene, request->method);
+  if (code == DONE) code = density_judge("run", scene, request->method);
   if (code == DONE) code = place_momenta(request, scene);
   if (code == DONE) code = check_events(request, scene);
   if (code == DONE) code = run_check_settings(request, scene);

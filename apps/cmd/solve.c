@@ -202,6 +202,17 @@ static int solve_ground(const solve_request *r, const problem *scene, double *U)
   return status == DVI_OK ? DONE : library_error(status);
 }
 
+/* A wave function of zero is a state, and seldom the one that is meant. */
+static void hint_at_ground(const problem *scene, const dvi_density *density, const double *U)
+{
+  const double nothing = 1e-12;
+  double most = 0.0;
+  for (int64_t i = 0; i < density_coefficients(density); i++) most = fmax(most, fabs(U[i]));
+  if (most < nothing && dvi_scene_schroedinger(scene->scene) != NULL)
+    complain(
+        "solve: this state is psi = 0; 'solve: ground' in the scene asks for the ground state");
+}
+
 static int solve_static(const solve_request *r, const problem *scene, double *U)
 {
   const double *q, *v, *p;
@@ -210,6 +221,7 @@ static int solve_static(const solve_request *r, const problem *scene, double *U)
   dvi_scene_start(scene->scene, &q, &v, &p);
   dvi_status status = dvi_density_lift(density, 0, q, U);
   if (status == DVI_OK) status = dvi_density_solve(density, U, &report);
+  if (status == DVI_OK) hint_at_ground(scene, density, U);
   return status == DVI_OK ? tell_state(r, scene, density, U, &report) : library_error(status);
 }
 

@@ -23,20 +23,42 @@ bool has_field(const problem *scene)
   return density_of(scene) != NULL || dvi_scene_field(scene->scene) != NULL;
 }
 
-void density_warn(const char *command, const problem *scene, const char *method)
+/* Of the domains with axes only those of rotations have neither a space nor a moving mesh. */
+bool has_rotations(const problem *scene)
 {
-  if (dvi_scene_schroedinger(scene->scene) == NULL) return;
-  if (strncmp(method, "vprk", 4) == 0) {
-    for (int k = 0; k < scene->terms->potential_count; k++)
-      if (scene->terms->potentials[k].without_hessian)
-        complain("%s: vprk needs the Hessian, which so many modes do not give; split:order=4, "
-                 "gauss:stages=2 and midpoint take fields of any size",
-                 command);
-    return;
-  }
-  complain("%s: %s does not keep the norm of the wave function; midpoint, gauss:stages=2, "
-           "split:order=4 and vprk do",
-           command, method);
+  return dvi_scene_axis(scene->scene, 0) != NULL && density_of(scene) == NULL &&
+         dvi_scene_moving(scene->scene) == NULL;
+}
+
+static bool lacks_hessian(const problem *scene)
+{
+  bool lacks = false;
+  for (int k = 0; k < scene->terms->potential_count; k++)
+    lacks = lacks || scene->terms->potentials[k].without_hessian;
+  return lacks;
+}
+
+/* Tell if the method takes the system of the scene, whatever else may be wrong with it. */
+static bool takes_system(const problem *scene, const char *method)
+{
+  dvi_integrator *tried = NULL;
+  const dvi_status status = dvi_integrator_create(dvi_scene_system(scene->scene), method, &tried);
+  dvi_integrator_destroy(&tried);
+  return status != DVI_UNSUPPORTED;
+}
+
+int density_judge(const char *command, const problem *scene, const char *method)
+{
+  if (dvi_scene_schroedinger(scene->scene) == NULL) return DONE;
+  const bool large = lacks_hessian(scene);
+  if (strncmp(method, "vprk", 4) == 0)
+    return large ? usage_error("%s: vprk needs the Hessian, which so many modes do not give; "
+                               "split:order=4, gauss:stages=2 and midpoint take fields of any size",
+                               command)
+                 : DONE;
+  complain("%s: %s does not keep the norm of the wave function; midpoint, gauss:stages=2%s",
+           command, method, large ? " and split:order=4 do" : ", split:order=4 and vprk do");
+  return takes_system(scene, method) ? DONE : USAGE;
 }
 
 /* One entry of the diagonal tells the sign of a definite mass. */

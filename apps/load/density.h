@@ -12,9 +12,12 @@ const dvi_density *density_of(const problem *scene);
 /** Return whether a problem is a field, with a density or on a mesh alone. */
 bool has_field(const problem *scene);
 
-/** Tell that a mechanical method does not keep the norm of Schroedinger's equation, or which
- * methods are for fields that are too large for vprk. */
-void density_warn(const char *command, const problem *scene, const char *method);
+/** Return whether a problem is a field of rotations. */
+bool has_rotations(const problem *scene);
+
+/** Tell that a mechanical method does not keep the norm of Schroedinger's equation, and which do.
+ * Return USAGE if it takes no such scene at all, or the field is too large for vprk. */
+int density_judge(const char *command, const problem *scene, const char *method);
 
 /** Return whether small fields grow without bound, with the least omega^2. */
 bool density_grows(const problem *scene, double *least);

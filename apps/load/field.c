@@ -10,6 +10,16 @@
 
 enum { NAME_SIZE = 32 };
 
+/* Refuse a field of rotations, of which a command knows nothing. */
+static int refuse_rotations(const char *command, problem **scene)
+{
+  const int code = usage_error(
+      "%s: not for fields of rotations, as that of %s; dvi run, check and order take it", command,
+      (*scene)->name);
+  problem_destroy(scene);
+  return code;
+}
+
 /* Refuse a mesh that moves, of which a command knows nothing. */
 static int refuse_moving(const char *command, problem **scene)
 {
@@ -27,6 +37,7 @@ int field_choose(const char *command, const char *name, problem **scene, const d
   *field = dvi_scene_field((*scene)->scene);
   if (*field != NULL || (density != NULL && (*density = density_of(*scene)) != NULL)) return DONE;
   if (dvi_scene_moving((*scene)->scene) != NULL) return refuse_moving(command, scene);
+  if (has_rotations(*scene)) return refuse_rotations(command, scene);
   const bool has_density = density_of(*scene) != NULL;
   problem_destroy(scene);
   if (has_density)

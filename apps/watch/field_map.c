@@ -150,6 +150,10 @@ int field_map_start(field_map *m, const problem *scene, const char *path, const 
   if (density != NULL) return start_density(m, density, name);
   if (m->moving != NULL) return start_moving(m, name);
   if (field != NULL) return start_wave(m, field, name);
+  if (has_rotations(scene))
+    return usage_error("run: --map is not for fields of rotations, as that of %s; --plot draws its "
+                       "columns over time",
+                       scene->name);
   return usage_error("run: --map is for fields, and %s is none; --plot draws its columns over time",
                      scene->name);
 }

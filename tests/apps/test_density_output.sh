@@ -145,7 +145,8 @@ grep -a -q 'NumberOfPoints="169" NumberOfCells="144"' static.vtu || fail 'parts 
 expect 0 'modes' modes plate.yaml --count 2 --vtu modes.vtu --shapes shapes.csv
 says shapes.csv '^x,y,u_mode_1,u_mode_2$' 'their columns'
 expect 0 'a mode' plot modes.vtu --field u_mode_2 --out mode.svg
-sed 's/y: \[0, 1\]/&, z: [0, 1]/; s/degree=2,cells=6/degree=1,cells=3/' plate.yaml >box.yaml
+sed 's/y: \[0, 1\]/&, z: [0, 1]/; s/degree=2,cells=6/degree=1,cells=3/; s/sin(pi\*y)/&*sin(pi*z)/' \
+  plate.yaml >box.yaml
 expect 0 'a box' solve box.yaml --vtu box.vtu
 grep -a -q 'NumberOfPoints="64" NumberOfCells="27"' box.vtu || fail 'a mesh of boxes'
 expect 0 'its outside' plot box.vtu --out box.svg

@@ -201,7 +201,7 @@ about out rate -1 1e-12
 about out mean "$(awk 'BEGIN { p = atan2(0, -1); printf "%.15g", -8 * p * p }')" 1e-10
 
 # ends of a plane: fixed values at rest, nodes that slide, and a density that nodes feel
-sed 's/^boundary.*/boundary: {bottom: {fixed: -A*cos(s)}, left: fixed}/
+sed 's/^boundary.*/boundary: {bottom: {fixed: -A*cos(s)}, left: {fixed: -A*cos(s)}}/
   s/velocity: .*}/slide: yes}/
   s/- (d(u,x) - /- (1 + 0.1*x*sin(y))*(d(u,x) - /' plane.yaml >held.yaml
 expect 0 'a plane with ends' run held.yaml --t-end 0.5 --final --columns x_1,y_20,u_25
@@ -224,7 +224,8 @@ refused plane.yaml flat 's/velocity.*}/jump: 1}/' "a jump is one along an axis, 
 refused plane.yaml one 's/velocity.*}/velocity: 1}/' 'where a vector of 2 is needed' 9:40
 refused plane.yaml graded 's/velocity.*}/monitor: 1}/' 'a monitor, which fields of one' 9:9
 refused plane.yaml flow 's/^boundary.*/boundary: {left: {free: 1}}/' 'flux, a rate or robin' 7:11
-refused plane.yaml outside 's/^boundary.*/boundary: fixed/;s/there, there/1, 9/;s/velocity.*/}/' \
+refused plane.yaml outside \
+  's/^boundary.*/boundary: {boundary: {fixed: -A*cos(s)}}/;s/there, there/1, 9/;s/velocity.*/}/' \
   "the probe 'crest': moving: the point (1, 9) is outside of the mesh" 11:3
 refused plane.yaml slow 's/velocity.*}/slide: 3}/' 'slide is yes or no' 9:37
 

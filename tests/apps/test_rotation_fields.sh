@@ -111,3 +111,12 @@ refused rod.yaml word 's/rotation/spinor/' 'scalar, complex, vector(d) or rotati
 refused rod.yaml bent 's/kappa(R,x), kappa(R,x)/kappa(R), kappa(R)/' 'as in kappa(R,x)' 5:44
 
 finish
+
+# ---- what is not for them ----
+
+expect 2 'a map' run ring.yaml --map map.svg
+says err 'not for fields of rotations.*--plot' 'why not'
+for command in modes solve; do
+  expect 2 "$command" $command ring.yaml
+  says err "$command: not for fields of rotations" 'why not'
+done

@@ -59,6 +59,20 @@ expect 2 'a boundary with data' run robin.yaml
 says err '^dvi: robin.yaml:4:11: .*psi = 0 on the boundary' 'the boundary that there may be'
 expect 2 'a step of waves' run plane.yaml --method verlet
 says err 'verlet does not keep the norm of the wave function; midpoint, gauss:stages=2' 'what does'
+[ "$(wc -l <err)" -eq 1 ] || fail 'one sentence on verlet'
+sed 's/fourier:modes=4/fourier:modes=200/;s/, points=[^,]*//' plane.yaml >fine.yaml
+expect 2 'vprk of many modes' run fine.yaml --method vprk
+says err 'vprk needs the Hessian' 'what it needs'
+[ "$(wc -l <err)" -eq 1 ] || fail 'one sentence on vprk'
+expect 2 'verlet of many modes' run fine.yaml --method verlet
+says err 'midpoint, gauss:stages=2 and split:order=4 do$' 'without vprk'
+expect 2 'a static state' modes plane.yaml --static
+says err '^dvi: modes: --static is not for schroedinger' 'why not'
+expect 2 'states near a number' modes plane.yaml --near 1
+says err '^dvi: modes: --near is not for schroedinger' 'why not'
+sed 's/psi: .*}/psi: [0, 0]}/' plane.yaml >empty.yaml
+expect 0 'a wave function of zero' solve empty.yaml
+says err "'solve: ground'" 'a hint'
 expect 2 'paths of polynomials' run plane.yaml --method galerkin:degree=3,quadrature=lobatto
 says err 'lobatto does not keep the norm of the wave function; midpoint, gauss:stages=2' 'what does'
 

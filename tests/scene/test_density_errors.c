@@ -91,7 +91,19 @@ START_TEST(a_start_agrees_with_what_is_fixed)
   refused(LINE WAVE "boundary: fixed\ninitial: {u: cos(pi*x)}\n",
           ":6:10:", "the start of u is 1 at 'boundary', where 0 is fixed");
   (void)open_scene(LINE WAVE "boundary: fixed\ninitial: {u: exp(-40*(x - 0.5)^2)}\n");
+  refused("domain: {x: [0, 1]}\nspace: fem:degree=1,cells=4\nfields: {u: scalar}\n" WAVE
+          "moving: {mu: 1}\nboundary: {right: {fixed: 2}}\ninitial: {u: x}\n",
+          ":7:10:", "the start of u is 1 at x = 1, where 2 is fixed");
   (void)open_scene(LINE WAVE "boundary: {left: {fixed: 1}}\n"); /* of a static state */
+}
+END_TEST
+
+START_TEST(a_start_has_a_finite_energy)
+{
+  check_refused(LINE WAVE "initial: {u: 1e160*x}\n", DVI_NOT_FINITE, ":5:10:",
+                "the start of u is 1.25e+159 at x = 0.125, and its energy would overflow");
+  check_refused(LINE WAVE "initial: {u': -1e200}\n", DVI_NOT_FINITE,
+                ":5:10:", "the start of u' is -1e+200 at x = 0, ");
 }
 END_TEST
 
@@ -211,6 +223,7 @@ SUITE(density_errors)
   tcase_add_test(tests, a_density_moves_all_of_its_fields);
   tcase_add_test(tests, sections_of_densities_belong_together);
   tcase_add_test(tests, a_start_agrees_with_what_is_fixed);
+  tcase_add_test(tests, a_start_has_a_finite_energy);
   tcase_add_test(tests, axes_and_spaces_are_as_described);
   tcase_add_test(tests, fields_are_numbers_and_vectors);
   tcase_add_test(tests, conditions_are_of_parts_and_do_not_contradict);

@@ -434,8 +434,38 @@ START_TEST(least_eigenvalue_tells_of_growth)
 }
 END_TEST
 
+static int negative(int count, double t, const double *x, const double *z, double *l, double *l_z,
+                    double *l_zz, void *user)
+{
+  (void)t, (void)x, (void)user;
+  for (int k = 0; k < count; k++) {
+    if (l != NULL) l[k] = -z[k] * z[k] / 2;
+    if (l_z != NULL) l_z[k] = -z[k];
+    if (l_zz != NULL) l_zz[k] = -1;
+  }
+  return 0;
+}
+
+/* All modes grow, and the fastest one of the right sign most. Its frequency is a bound from above
+ * within 1e-3, and its square within 2e-3. */
+START_TEST(modes_of_a_negative_mass_grow)
+{
+  dvi_density_part parts[] = {kinetic_part, elastic_part};
+  density_field right = make_density(make_density_space(kinds[0], 1, -1, 2, 0), parts, 2, NULL, 0);
+  parts[0].density = negative;
+  density_field wrong = make_density(make_density_space(kinds[0], 1, -1, 2, 0), parts, 2, NULL, 0);
+  double lambda = 0, omega = 0;
+  ck_assert_int_eq(dvi_density_fastest(right.density, &omega), DVI_OK);
+  ck_assert_int_eq(dvi_density_least(wrong.density, &lambda), DVI_OK);
+  ck_assert_double_eq_tol(-lambda / (omega * omega), 1, 2e-3);
+  end_density(&right);
+  end_density(&wrong);
+}
+END_TEST
+
 SUITE(density_systems)
 {
+  tcase_add_test(tests, modes_of_a_negative_mass_grow);
   tcase_add_test(tests, least_eigenvalue_tells_of_growth);
   tcase_add_test(tests, callbacks_agree_with_differences_on_intervals);
   tcase_add_test(tests, callbacks_agree_with_differences_on_circles);

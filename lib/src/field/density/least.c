@@ -39,8 +39,8 @@ static int is_semidefinite(int n, double (*A)[DVI_JETS_MAX])
   return 1;
 }
 
-/* Second derivatives of a quadratic part are those at 0, times a sign. A part that fails counts as indefinite,
- * and the matrices decide. */
+/* Second derivatives of a quadratic part are those at 0, times a sign. A part that fails counts as
+ * indefinite, and the matrices decide. */
 static int is_semidefinite_at(const dvi_density *density, const dvi__density_part *part, int64_t k,
                               double sign)
 {

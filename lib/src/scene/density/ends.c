@@ -2,7 +2,7 @@
  * the jump is a wave, which is the steeper the finer the cells are. */
 #include <math.h>
 
-#include "scene/density/scene_density.h"
+#include "scene/density/moving.h"
 #include "scene/sections/sections.h"
 #include "text/heap.h"
 
@@ -69,5 +69,57 @@ bool dvi__density_check_ends(dvi_scene *scene, const double *U)
     if (s->condition[i].kind == DVI_FIXED)
       good = check_part(scene, s->condition + i, &(start_values){U, fixed});
   dvi__heap_free(fixed);
+  return good;
+}
+
+/* ---- meshes that move ---- */
+
+static bool refuse_node(dvi_scene *scene, int component, double x, double given, double fixed)
+{
+  return dvi__scene_refuse(scene, dvi__tree_find(scene->tree, "initial")->span,
+                           "the start of %s is %.6g at %s = %.6g, where %.6g is fixed at t = 0; "
+                           "they must agree",
+                           scene->density->component[component], given,
+                           scene->density->jets.axis[0], x, fixed);
+}
+
+/* Compare a component [count] at the first `nodes` of all nodes, where it is no unknown. */
+static bool check_component(dvi_scene *scene, int c, int nodes, int count, const double *x,
+                            const double *fixed, double *given)
+{
+  const struct dvi__scene_density *s = scene->density;
+  const int numbers = s->jets.dimension + s->jets.components;
+  const int *unknown = dvi_moving_unknowns(s->moving->made, NULL);
+  double size = 0;
+  if (dvi__local_value(s->start[c], count, 0, x, given) != 0)
+    return dvi__density_complain(scene, dvi__tree_find(scene->tree, "initial"),
+                                 DVI_CALLBACK_FAILED);
+  for (int i = 0; i < count; i++) size = fmax(size, fmax(fabs(given[i]), fabs(fixed[i])));
+  for (int i = 0; i < nodes; i++)
+    if (unknown[(ptrdiff_t)i * numbers + s->jets.dimension + c] < 0 &&
+        fabs(given[i] - fixed[i]) > same_value * size)
+      return refuse_node(scene, c, x[i], given[i], fixed[i]);
+  return true;
+}
+
+bool dvi__moving_check_ends(dvi_scene *scene)
+{
+  const struct dvi__scene_density *s = scene->density;
+  const int components = s->jets.components;
+  int nodes, cells;
+  bool good = true;
+  if (s->is_static || s->start == NULL || s->conditions == 0) return true;
+  (void)dvi_moving_unknowns(s->moving->made, &nodes);
+  (void)dvi_moving_nodes(s->moving->made, &cells);
+  const int count = s->jets.dimension == 1 ? cells + 1 : nodes;
+  double *x = dvi__heap_take((size_t)(s->jets.dimension + components + 1) * (size_t)count,
+                             sizeof *x);
+  if (x == NULL) return dvi__scene_no_memory(scene);
+  double *const u = x + s->jets.dimension * count, *const given = u + components * count;
+  const dvi_status status = dvi_moving_lift(s->moving->made, 0, scene->q, x, u);
+  if (status != DVI_OK) good = dvi__density_complain(scene, s->moving->section, status);
+  for (int c = 0; c < components && good; c++)
+    good = check_component(scene, c, nodes, count, x, u + c * count, given);
+  dvi__heap_free(x);
   return good;
 }

@@ -28,6 +28,9 @@ int dvi__moving_place_derivative(int count, double t, const double *x, const dou
 /* Give the start, as in dvi_moving_start. `user` is the scene_moving. */
 dvi_moving_wave dvi__moving_wave;
 
+/* Refuse a section initial that is off the values that are fixed (ends.c). */
+bool dvi__moving_check_ends(dvi_scene *scene);
+
 /* Count the nodes that at the start are as fast as waves, or faster, and give the position of the
  * first one. */
 int dvi__moving_fast_nodes(const dvi_scene *scene, double *x);

@@ -215,7 +215,7 @@ bool dvi__moving_make(dvi_scene *scene)
   scene->form = s->is_static ? "static" : "general Lagrangian";
   if (!dvi__moving_name_unknowns(scene)) return false;
   scene->terms.dimension = scene->n;
-  return make_start(scene);
+  return make_start(scene) && dvi__moving_check_ends(scene);
 }
 
 void dvi__moving_clear(dvi_scene *scene)

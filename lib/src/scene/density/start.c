@@ -1,5 +1,6 @@
 /* The section initial: the fields and their rates at t = 0, as functions of position. A field that
  * is given as a function of time, too, has the rates of that. */
+#include <math.h>
 #include <string.h>
 
 #include "scene/density/scene_density.h"
@@ -119,12 +120,56 @@ dvi_status dvi__density_interpolate_rate(const struct dvi__scene_density *s, dou
   return status;
 }
 
+/* ---- size ---- */
+
+/* Above this an energy, a sum of squares of values and of slopes, may overflow. */
+static const double largest = 1e140;
+
+static int coordinate_at(int64_t count, const double *x, double *f, void *user)
+{
+  memcpy(f, x + *(const int *)user * count, (size_t)count * sizeof *f);
+  return 0;
+}
+
+/* Write the place of a function as in " at x = 0.5, y = 1". Those of fourier have none. `room` is
+ * [functions]. */
+static void write_place(const struct dvi__scene_density *s, int64_t function, double *room,
+                        char *text, size_t size)
+{
+  int64_t count;
+  size_t used = 0;
+  text[0] = '\0';
+  if (dvi_space_boundary(s->space, "boundary", &count) == NULL) return;
+  for (int d = 0; d < s->jets.dimension && used < size; d++, used = strlen(text))
+    if (dvi_space_interpolate(s->space, coordinate_at, &d, room) == DVI_OK)
+      (void)dvi__print(text + used, size - used, "%s%s = %.6g", d == 0 ? " at " : ", ",
+                       s->jets.axis[d], room[function]);
+}
+
+/* Refuse coefficients that are too large, of the fields or of their rates. `U` is overwritten. */
+static bool check_size(dvi_scene *scene, double *U, const char *mark)
+{
+  const struct dvi__scene_density *s = scene->density;
+  char place[128];
+  for (int64_t i = 0; i < s->jets.components * s->functions; i++) {
+    const double value = U[i];
+    if (!(fabs(value) > largest)) continue;
+    write_place(s, i % s->functions, U, place, sizeof place);
+    return dvi__complain(scene->complaint, DVI_NOT_FINITE,
+                         dvi__tree_find(scene->tree, "initial")->span,
+                         "the start of %s%s is %.6g%s, and its energy would overflow: %g at most",
+                         s->component[i / s->functions], mark, value, place, largest);
+  }
+  return true;
+}
+
 bool dvi__density_start(dvi_scene *scene, double *U, double *rate)
 {
   const struct dvi__scene_density *s = scene->density;
   dvi__fault_clear();
   dvi_status status = dvi__density_interpolate(s, s->start, 0, U);
   if (status == DVI_OK) status = dvi__density_interpolate_rate(s, rate);
-  return status == DVI_OK ||
-         dvi__density_complain(scene, dvi__tree_find(scene->tree, "initial"), status);
+  if (status != DVI_OK)
+    return dvi__density_complain(scene, dvi__tree_find(scene->tree, "initial"), status);
+  return check_size(scene, U, "") && check_size(scene, rate, "'");
 }
