@@ -41,6 +41,8 @@ END
 expect 0 'a judge of many modes' order shaken.yaml --t-end 0.5 --levels 4
 says out 'claimed order 4, fitted 4.00 .*: ok' 'the order of splitting'
 says out 'judge at t = 0.5: two runs of gauss, stages 6' 'marches judge marches'
+expect 2 'digits of a march' run shaken.yaml --verify
+says err 'run: --verify is .* with those of --h at half the step' 'what to do instead'
 expect 0 'a check' check plane.yaml
 says out 'norm [0-9.]*e' 'the norm is measured'
 expect 0 'a method of one-forms' run plane.yaml --method dg --final
