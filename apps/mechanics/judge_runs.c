@@ -1,6 +1,8 @@
 #include "mechanics/judge_runs.h"
+#include "mechanics/field_motion.h"
 #include "study/norms.h"
 
+#include <dvi/scene.h>
 #include <float.h>
 #include <math.h>
 #include <stdbool.h>
@@ -12,7 +14,7 @@
  * and the last, because the numbers of steps differ by a factor near the golden ratio. At every
  * level both halve their steps. Two runs may agree by luck, so the ends of the level before must
  * agree, too. The error is the largest distance of these four from each other. */
-enum { LEVELS_MAX = 16, PROGRESS_STEPS = 256 };
+enum { LEVELS_MAX = 16, PROGRESS_STEPS = 256, MANY_COORDINATES = 64 };
 static const double other_ratio = 1.618;
 /* multiple of the problem's own step in a first run of low degree */
 static const double first_step = 8.0;
@@ -25,19 +27,33 @@ static const double agreement = 1e-6;
 typedef struct runner {
   const char *method, *key;
   int value[2];
+  bool marches; /* it is a march of the scene's field */
 } runner;
 
 static const runner galerkin = {.method = "galerkin", .key = "degree", .value = {16, 12}},
                     lie_galerkin = {.method = "lie-galerkin", .key = "degree", .value = {16, 12}},
                     vprk = {.method = "vprk", .key = "nodes", .value = {6, 5}},
                     dg_phase = {.method = "dg-phase", .key = "degree", .value = {6, 5}},
-                    hamiltonian = {.method = "hamiltonian", .key = "degree", .value = {6, 5}};
+                    hamiltonian = {.method = "hamiltonian", .key = "degree", .value = {6, 5}},
+                    gauss = {.method = "gauss", .key = "stages", .value = {6, 5}, .marches = true};
 
-static const runner *runner_for(const dvi_system_terms *terms)
+/* Return whether the scene's field has marches by Gauss stages, as Schroedinger's equation does.
+ * They go forward. */
+static bool has_march(const problem *scene, double t_end)
 {
+  const char *section;
+  return t_end > 0 && dvi_scene_marches(scene->scene, gauss.method) &&
+         dvi_scene_march_refused(scene->scene, gauss.method, &section) == NULL;
+}
+
+/* With many coordinates a march is far cheaper than vprk, and needs no second derivatives. */
+static const runner *runner_for(const problem *scene, double t_end)
+{
+  const dvi_system_terms *terms = scene->terms;
   if (terms->hamiltonian != NULL) return terms->constraint != NULL ? &dg_phase : &hamiltonian;
   if (terms->factors != NULL) return &lie_galerkin;
-  return terms->one_form != NULL ? &vprk : &galerkin;
+  if (terms->one_form == NULL) return &galerkin;
+  return scene->nq >= MANY_COORDINATES && has_march(scene, t_end) ? &gauss : &vprk;
 }
 
 /* The ends of the runs. */
@@ -55,6 +71,10 @@ static dvi_status run_once(const problem *scene, const runner *by, int which, lo
   char method[32];
   dvi_integrator *integrator = NULL;
   (void)snprintf(method, sizeof method, "%s:%s=%d", by->method, by->key, by->value[which]);
+  if (by->marches) {
+    if (progress != NULL) progress_show(progress, -1.0, "judge");
+    return field_motion(scene, method, (double)steps, t_end, false, q, NULL);
+  }
   dvi_status status = dvi_integrator_create(scene->system, method, &integrator);
   if (status == DVI_OK) status = dvi_integrator_start(integrator, 0.0, scene->q, scene->p);
   for (long i = 0; i < steps && status == DVI_OK; i++) {
@@ -129,7 +149,7 @@ dvi_status judge_by_runs(judgement *judge, const problem *scene, double t_end,
   double *ends = calloc(4 * n, sizeof *ends);
   judge->other = calloc(n, sizeof *judge->other);
   levels l = {
-      .by = runner_for(scene->terms), .now = ends, .before = ends + 2 * n, .best = HUGE_VAL};
+      .by = runner_for(scene, t_end), .now = ends, .before = ends + 2 * n, .best = HUGE_VAL};
   const dvi_status status = ends != NULL && judge->other != NULL
                                 ? refine_runs(judge, scene, t_end, progress, &l)
                                 : DVI_NO_MEMORY;

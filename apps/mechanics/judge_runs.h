@@ -3,7 +3,8 @@
 #define JUDGE_RUNS_H
 #include "mechanics/judge.h"
 
-/** Run degree 16, and degree 12 with other steps. Steps get smaller until the ends of two levels
+/** Run degree 16, and degree 12 with other steps. Schroedinger's equation with many
+ * coordinates is marched by gauss of 6 and 5 stages. Steps get smaller until the ends of two levels
  * come no closer. Fills q, error and words, and allocates and fills other.
  *
  *  @retval DVI_NO_MEMORY

@@ -26,6 +26,7 @@ const char *motion_say(study_phrase phrase, double t_end, char *text, size_t siz
   case STUDY_ROUNDOFF:
     return "roundoff (what a change of the start in its last digit does to the end)";
   case STUDY_MORE: return "ask for --levels 6";
+  case STUDY_FURTHER: return "ask for further levels, such as --levels 12, or for a smaller --h";
   case STUDY_FINER:
     (void)snprintf(text, size, "leave --h to the search, or shorten the span, --t-end %g",
                    shorter * t_end);

@@ -8,6 +8,14 @@
 
 static const double order_tolerance = 0.2;
 
+/* Part of the claimed order by which a slope on its way to it may still be off. */
+static const double on_its_way = 0.25;
+
+/* Largest process time of a run, in seconds, to which levels are added. */
+static const double cheap_seconds = 1.0;
+
+enum { FURTHER_LEVELS = 6 };
+
 /* --- The table. --- */
 
 void order_columns(const study_words *words, table_column *columns)
@@ -50,6 +58,28 @@ static dvi_status order_run_level(const study_subject *subject, double parts, st
   return status;
 }
 
+/* Run a level, and add its row. */
+static dvi_status add_level(const study_subject *subject, double parts, result_table *rows,
+                            order_result *result)
+{
+  study_level level = {.number = NULL};
+  const int k = result->levels;
+  const dvi_status status = order_run_level(subject, parts, &level);
+  if (status != DVI_OK) return status;
+  result->length[k] = fabs(level.length);
+  result->error[k] = level.error;
+  result->seconds = level.seconds;
+  result->levels = k + 1;
+  order_add_row(rows, subject, order_local_slope(result, k), &level);
+  return DVI_OK;
+}
+
+static void fit_levels(order_result *result)
+{
+  result->settled = window_fit(result->levels, result->length, result->error, result->floor,
+                               result->ceiling, &result->fit);
+}
+
 dvi_status order_measure(const study_subject *subject, const levels_choice *choice, int levels,
                          result_table *rows, order_result *result)
 {
@@ -63,17 +93,33 @@ dvi_status order_measure(const study_subject *subject, const levels_choice *choi
   result->judge_error = subject->judge_error;
   result->floor = choice->floor;
   result->ceiling = choice->ceiling;
+  result->levels = 0;
   for (int k = 0; k < levels; k++) {
-    study_level level = {.number = NULL};
-    const dvi_status status = order_run_level(subject, (double)choice->parts[k], &level);
+    const dvi_status status = add_level(subject, (double)choice->parts[k], rows, result);
     if (status != DVI_OK) return status;
-    result->length[k] = fabs(level.length);
-    result->error[k] = level.error;
-    result->levels = k + 1;
-    order_add_row(rows, subject, order_local_slope(result, k), &level);
   }
-  result->settled = window_fit(result->levels, result->length, result->error, result->floor,
-                               result->ceiling, &result->fit);
+  fit_levels(result);
+  return DVI_OK;
+}
+
+/* Return the ratio of the last two levels, which is above 1. */
+static double last_ratio(const order_result *result)
+{
+  const double *length = result->length + result->levels;
+  return length[-2] / length[-1];
+}
+
+dvi_status order_extend(const study_subject *subject, result_table *rows, order_result *result)
+{
+  for (int i = 0; i < FURTHER_LEVELS && order_may_settle(result) &&
+                  last_ratio(result) * result->seconds <= cheap_seconds;
+       i++) {
+    const double last = fabs(subject->span) / result->length[result->levels - 1];
+    const double parts = fmax(round(last) + 1.0, round(last * last_ratio(result)));
+    const dvi_status status = add_level(subject, parts, rows, result);
+    if (status != DVI_OK) return status;
+    fit_levels(result);
+  }
   return DVI_OK;
 }
 
@@ -94,6 +140,17 @@ double order_local_slope(const order_result *result, int k)
 static bool is_claimed(const order_result *result, double slope)
 {
   return fabs(slope - result->claimed) <= order_tolerance;
+}
+
+bool order_may_settle(const order_result *result)
+{
+  const int last = result->levels - 1;
+  if (result->settled || result->chooses || last < 1 || result->levels >= STUDY_LEVELS_MAX)
+    return false;
+  const double off = fabs(order_local_slope(result, last) - result->claimed);
+  const double next = result->error[last] * pow(last_ratio(result), -result->claimed);
+  return off <= on_its_way * result->claimed && next > result->floor &&
+         result->error[last] < result->ceiling;
 }
 
 bool order_closer_settled(const order_result *result)

@@ -42,6 +42,7 @@ typedef struct order_result {
   double floor, ceiling; /**< errors outside are not fitted */
   dvi_order_fit fit;
   bool settled;       /**< slope is the same all over the fitted levels */
+  double seconds;     /**< process time of a run of the last level */
   closer_look closer; /**< closer look, requested where the levels do not show the claimed order */
 } order_result;
 
@@ -49,6 +50,10 @@ typedef struct order_result {
  * order_columns. */
 dvi_status order_measure(const study_subject *subject, const levels_choice *choice, int levels,
                          result_table *rows, order_result *result);
+
+/** Run up to six further levels by the ratio of the last two, while order_may_settle and a run takes
+ * no more than a second. */
+dvi_status order_extend(const study_subject *subject, result_table *rows, order_result *result);
 
 /** Fill in the columns of the table, which end with one without a title. */
 enum { ORDER_COLUMNS_MAX = 8 + STUDY_FURTHER_MAX + STUDY_COUNTS_MAX };
@@ -59,6 +64,10 @@ double order_local_slope(const order_result *result, int k);
 
 /** Return the number of levels of the fit. */
 int order_fitted(const order_result *result);
+
+/** Return whether a further level may settle the slope. The errors of the last two fall about as
+ * claimed, and the next one is above the floor. */
+bool order_may_settle(const order_result *result);
 
 /** Return whether the closer look has an order, and whether it decides. Its order counts if errors
  * of the levels fall about as it predicts. */

@@ -147,6 +147,11 @@ static void print_unsettled(FILE *stream, const order_result *result)
                 "not decided: the slope does not settle (%.2f over levels %d to %d, %.2f to %.2f "
                 "between neighbours): ",
                 result->fit.slope, result->fit.first + 1, result->fit.last + 1, least, most);
+  if (order_may_settle(result)) {
+    (void)fprintf(stream, "it comes near the claimed order at the last levels alone\n");
+    print_line(stream, result, STUDY_FURTHER);
+    return;
+  }
   (void)fprintf(stream,
                 "between %s that are too large and %s there is no range that shows an order\n",
                 result->words->parts, floor_cause(result, text));

@@ -35,6 +35,7 @@ typedef enum study_phrase {
   STUDY_WHOLE,    /**< object of the errors, such as "the span" */
   STUDY_ROUNDOFF, /**< cause that hides small errors, other than the judge's own error */
   STUDY_MORE,     /**< advice on too few levels */
+  STUDY_FURTHER,  /**< advice on a slope that settles at the last levels */
   STUDY_FINER,    /**< advice on parts that are too large */
   STUDY_COARSER,  /**< advice on parts that are too small */
   /** advice on parts of chosen lengths, where an error is no power of the first length */

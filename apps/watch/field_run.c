@@ -49,10 +49,14 @@ static int refuse_options(const run_request *r)
   } list[] = {{r->momenta != NULL, "momenta"},
               {r->events != NULL, "events"},
               {r->project, "project"},
-              {r->verify, "verify"},
               {r->alarms.count > 0, "alarm"},
               {r->how.transform != NULL, "time-transform"},
               {r->how.control != NULL, "step-control"}};
+  if (r->verify)
+    return usage_error(
+        "run: --verify is for mechanical methods such as verlet; compare the rows of "
+        "%s, a march of a field, with those of --h at half the step",
+        r->method);
   for (size_t i = 0; i < sizeof list / sizeof *list; i++)
     if (list[i].given)
       return usage_error("run: --%s is for mechanical methods such as verlet; %s is a march of a "

@@ -28,6 +28,21 @@ expect 0 'orders' order plane.yaml --t-end 0.5
 says out 'midpoint: claimed order 2, fitted 2.00 .*: ok' 'order 2'
 expect 0 'orders' order plane.yaml --t-end 0.5 --method gauss:stages=2
 says out 'claimed order 4, fitted [34].[09]. .*: ok' 'order 4'
+cat >shaken.yaml <<END
+domain: {x: [-15, 15]}
+space: fourier:modes=40
+schroedinger: {potential: x^2/2 - 0.3*x*sin(0.7*t)}
+boundary: periodic
+initial: {psi: "[exp(-x^2/2)/pi^0.25, 0]"}
+method: split:order=4
+step: 0.02
+until: 10
+END
+expect 0 'a judge of many modes' order shaken.yaml --t-end 0.5 --levels 4
+says out 'claimed order 4, fitted 4.00 .*: ok' 'the order of splitting'
+says out 'judge at t = 0.5: two runs of gauss, stages 6' 'marches judge marches'
+expect 2 'digits of a march' run shaken.yaml --verify
+says err 'run: --verify is .* with those of --h at half the step' 'what to do instead'
 expect 0 'a check' check plane.yaml
 says out 'norm [0-9.]*e' 'the norm is measured'
 expect 0 'a method of one-forms' run plane.yaml --method dg --final

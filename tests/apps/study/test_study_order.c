@@ -201,6 +201,53 @@ START_TEST(a_boundary_value_problem_has_its_order_and_further_errors)
 }
 END_TEST
 
+/* An error whose slope rises from 2 to 4 where h is about 1/10. */
+static dvi_status rising_run(void *user, double parts, study_level *level)
+{
+  const double h = 1.0 / parts;
+  (void)user;
+  level->parts = parts;
+  level->length = h;
+  level->error = pow(h, 4.0) / (1.0 + 100.0 * h * h);
+  return DVI_OK;
+}
+
+static dvi_status rising_repeat(void *user, double parts, double *preparation)
+{
+  (void)user, (void)parts, (void)preparation;
+  return DVI_OK;
+}
+
+START_TEST(levels_are_added_while_the_slope_comes_near_the_order)
+{
+  rule r = simpson();
+  study_subject subject = subject_of(&r, "rising", 4);
+  const levels_choice choice = {.parts = {2, 4, 8, 16, 32, 64}, .floor = 1e-14, .ceiling = 1.0};
+  table_column columns[ORDER_COLUMNS_MAX];
+  order_result result = {0};
+  char text[TEXT];
+  subject.run = rising_run;
+  subject.repeat = rising_repeat;
+  order_columns(subject.words, columns);
+  result_table *rows = table_create(columns);
+  ck_assert_int_eq(order_measure(&subject, &choice, 6, rows, &result), DVI_OK);
+  ck_assert_int_eq(order_may_settle(&result), 1);
+  verdict_of(&result, text);
+  ck_assert_ptr_nonnull(strstr(text, "it comes near the claimed order at the last levels alone"));
+  ck_assert_int_eq(order_extend(&subject, rows, &result), DVI_OK);
+  ck_assert_int_eq(result.levels, 8); /* the slopes 3.90, 3.97 and 3.99 are settled */
+  ck_assert_int_eq(table_rows(rows), 8);
+  ck_assert_double_eq_tol(result.length[7], 1.0 / 256.0, 1e-15);
+  ck_assert_int_eq(order_holds(&result), 1);
+  ck_assert_int_eq(order_may_settle(&result), 0);
+  table_destroy(&rows);
+
+  result.settled = false;
+  result.floor = result.error[7] / 10.0; /* the next error would be below */
+  ck_assert_int_eq(order_may_settle(&result), 0);
+}
+END_TEST
+
 SUITE(study_order)
 {
   tcase_add_test(tests, rules_have_their_orders);
@@ -209,5 +256,6 @@ SUITE(study_order)
   tcase_add_test(tests, sentences_are_in_the_words_of_the_subject);
   tcase_add_test(tests, the_table_has_the_titles_of_the_subject);
   tcase_add_test(tests, failures_are_rough_or_final);
+  tcase_add_test(tests, levels_are_added_while_the_slope_comes_near_the_order);
   tcase_add_test(tests, a_boundary_value_problem_has_its_order_and_further_errors);
 }
