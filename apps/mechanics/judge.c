@@ -73,6 +73,14 @@ static bool ask_digits(judgement *judge, const problem *scene, double t_end)
   return true;
 }
 
+/* IDA takes Hessians. Of the same library CVODE's Adams methods take potentials without one. */
+static dvi_reference_code code_for(const problem *scene)
+{
+  for (int k = 0; k < scene->terms->potential_count; k++)
+    if (scene->terms->potentials[k].without_hessian) return DVI_CVODE_ADAMS;
+  return DVI_IDA;
+}
+
 /* Ask IDA, with so many steps at most, or as many as the library allows if these are 0. */
 static dvi_status ask_ida(judgement *judge, const problem *scene, double t_end, long most,
                           double *p)
@@ -80,24 +88,26 @@ static dvi_status ask_ida(judgement *judge, const problem *scene, double t_end, 
   memcpy(judge->q, scene->q, (size_t)scene->nq * sizeof *judge->q);
   memcpy(p, scene->p, (size_t)scene->nv * sizeof *p);
   dvi_reference_report report;
-  const dvi_reference_options options = {.max_steps = most};
+  const dvi_reference_options options = {.code = code_for(scene), .max_steps = most};
   const dvi_status status = dvi_reference_judge(scene->system, 0.0, t_end, judge->q, p, &options,
                                                 &report);
   if (status != DVI_OK) return status;
-  set_words(judge, "IDA, run at two tolerances");
+  set_words(judge, options.code == DVI_IDA ? "IDA, run at two tolerances"
+                                           : "CVODE's Adams methods, run at two tolerances");
   judge->error = report.error;
   return DVI_OK;
 }
 
 /* Add IDA as a witness of the runs, which replaced its answer `ida`. If IDA contradicts the runs,
  * their error is the distance. */
-static void add_witness(judgement *judge, int n, const double *ida, double ida_error)
+static void add_witness(judgement *judge, const problem *scene, const double *ida, double ida_error)
 {
-  const double apart = norm_distance(n, judge->q, ida);
+  const double apart = norm_distance(scene->nq, judge->q, ida);
   const size_t length = strlen(judge->words);
   if (apart > contradiction * (ida_error + judge->error)) judge->error = apart;
   (void)snprintf(judge->words + length, sizeof judge->words - length,
-                 " (IDA, of error %.1e, is %.1e away)", ida_error, apart);
+                 " (%s, of error %.1e, is %.1e away)", code_for(scene) == DVI_IDA ? "IDA" : "CVODE",
+                 ida_error, apart);
 }
 
 /* Ask IDA first, because it shares no code with the methods. Of its answer and that of the runs,
@@ -118,7 +128,7 @@ static dvi_status ask_ida_then_runs(judgement *judge, const problem *scene, doub
                    " (IDA fails: they have no witness)");
     return status;
   }
-  if (status == DVI_OK) add_witness(judge, n, ida, ida_error);
+  if (status == DVI_OK) add_witness(judge, scene, ida, ida_error);
   if (status == DVI_OK && judge->error < ida_error) return DVI_OK;
   free(judge->other);
   judge->other = NULL;

@@ -145,3 +145,18 @@ if [ -w /dev/full ]; then
 fi
 no_trace 'order'
 finish
+
+# A Fourier field of 399 unknowns has no Hessian, which CVODE's Adams methods do without.
+cat >waves.yaml <<END
+domain: {x: [0, 20]}
+space: fourier:modes=199
+fields: {u: scalar}
+density: u'^2/2 - d(u,x)^2/2 - (1 - cos(u))
+boundary: {x: periodic}
+initial: {u: "exp(-(x-10)^2)"}
+step: 0.01
+until: 0.5
+END
+expect 0 'an independent judge' order waves.yaml --method verlet --judge ida
+says out 'fitted 2.00 .*: ok' 'the order'
+says out "CVODE's Adams methods, run at two tolerances" 'the judge'

@@ -163,11 +163,27 @@ static dvi_status reference_check_start(const dvi_system *system, double t, doub
   return DVI_OK;
 }
 
+/* CVODE's Adams and ARKODE iterate without Jacobians, and take potentials without Hessians. */
+static dvi__derivatives derivatives_of(const dvi__reference_run *run)
+{
+  const dvi_reference_code code = run->options.code;
+  const int has_jacobians = code != DVI_CVODE_ADAMS && code != DVI_ARKODE;
+  if (run->system->dynamics->equations == DVI__LIFTED) return DVI__STATES;
+  return !has_jacobians && dvi__system_without_hessian(run->system) != NULL ? DVI__GRADIENTS
+                                                                            : DVI__HESSIANS;
+}
+
+/* The patterns of second derivatives are complete only if these are evaluated. */
+static size_t entries_of(const dvi__reference_run *run, const dvi__pattern *pattern)
+{
+  return derivatives_of(run) == DVI__GRADIENTS ? 0 : (size_t)dvi__pattern_entries(pattern);
+}
+
 static dvi_status reserve_forces(dvi__reference_run *run)
 {
   if (run->system->force_count == 0) return DVI_OK;
-  run->F_q = DVI_NEW(double, dvi__pattern_entries(&run->system->by_q));
-  run->F_v = DVI_NEW(double, dvi__pattern_entries(&run->system->by_v));
+  run->F_q = DVI_NEW(double, entries_of(run, &run->system->by_q));
+  run->F_v = DVI_NEW(double, entries_of(run, &run->system->by_v));
   return run->F_q != NULL && run->F_v != NULL ? DVI_OK : dvi__reference_no_setup(run);
 }
 
@@ -179,9 +195,9 @@ static dvi_status reference_reserve(dvi__reference_run *run, const double *q, co
   run->v = DVI_NEW(double, n);
   run->force = DVI_NEW(double, n);
   run->multiplier = DVI_NEW(double, dvi_system_constraint_count(run->system));
-  run->L_qq = DVI_NEW(double, dvi__pattern_entries(&run->system->qq));
-  run->L_qv = DVI_NEW(double, dvi__pattern_entries(&run->system->qv));
-  run->L_vv = DVI_NEW(double, dvi__pattern_entries(&run->system->vv));
+  run->L_qq = DVI_NEW(double, entries_of(run, &run->system->qq));
+  run->L_qv = DVI_NEW(double, entries_of(run, &run->system->qv));
+  run->L_vv = DVI_NEW(double, entries_of(run, &run->system->vv));
   if (run->q == NULL || run->p == NULL || run->v == NULL || run->force == NULL ||
       run->multiplier == NULL || run->L_qq == NULL || run->L_qv == NULL || run->L_vv == NULL ||
       dvi__sundials_context(&run->context) != 0)
@@ -201,8 +217,8 @@ static dvi_status reference_prepare(dvi__reference_run *run, const double *q, co
     return dvi__fail(DVI_UNSUPPORTED,
                      "the system declares noise, and this code solves equations without");
   const int lifted = dynamics->equations == DVI__LIFTED;
-  DVI_TRY(dvi__evaluator_create(run->system, 1, lifted ? DVI__STATES : DVI__HESSIANS,
-                                &run->counters, &run->evaluator));
+  DVI_TRY(
+      dvi__evaluator_create(run->system, 1, derivatives_of(run), &run->counters, &run->evaluator));
   DVI_TRY(reference_reserve(run, q, p));
   DVI_TRY(dvi__state_check(run->evaluator, run->q, run->p));
   if (dynamics->constraint != NULL)

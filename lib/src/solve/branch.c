@@ -188,6 +188,17 @@ static int is_callback(dvi_status status)
   return status != DVI_OK && status != DVI_NOT_CONVERGED;
 }
 
+/* The branch may go on where motions are so fast that its shortest parts are long. */
+static dvi_status tell_far(const dvi__branch_end *end, double h)
+{
+  return dvi__fail(
+      DVI_STEP_TOO_LARGE,
+      "a step too large: the solution that continues those of shorter steps is found up to h = "
+      "%.4g; that of h = %.4g is too far from its guess to tell whether it continues them "
+      "(%d iterations, residual %.1e)",
+      end->reached * h, (end->reached + least_part) * h, end->report.iterations, end->report.row);
+}
+
 dvi_status dvi__branch_tell(const dvi__branch_end *end, double h, const dvi__branch_failure *whole)
 {
   const double reached = end->reached * h;
@@ -198,6 +209,7 @@ dvi_status dvi__branch_tell(const dvi__branch_end *end, double h, const dvi__bra
   if (is_callback(end->status))
     return dvi__fail_in(end->status, "the solution continues those of shorter steps up to h = %.4g",
                         reached);
+  if (!end->ends && !whole->unsolved) return tell_far(end, h);
   if (end->reached == 0)
     return dvi__fail_in(
         DVI_NOT_CONVERGED,

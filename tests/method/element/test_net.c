@@ -218,8 +218,8 @@ START_TEST(products_do_not_lead_beyond_a_pole)
     const char *words;
   } cases[] = {{1.9, DVI_OK, ""},
                {2, DVI_NOT_CONVERGED, "the matrix is singular"},
-               {2.2, DVI_STEP_TOO_LARGE, "ends at h = 1.99"},
-               {5, DVI_STEP_TOO_LARGE, "ends at h = 1.99"}};
+               {2.2, DVI_STEP_TOO_LARGE, "up to h = 1.99"},
+               {5, DVI_STEP_TOO_LARGE, "up to h = 1.99"}};
   static double q[UNSTABLE], p[UNSTABLE];
   int *start = create_tangle();
   dvi_system *system;
