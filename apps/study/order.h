@@ -51,8 +51,8 @@ typedef struct order_result {
 dvi_status order_measure(const study_subject *subject, const levels_choice *choice, int levels,
                          result_table *rows, order_result *result);
 
-/** Run up to six further levels by the ratio of the last two, while order_may_settle and a run takes
- * no more than a second. */
+/** Run up to six further levels by the ratio of the last two, while order_may_settle and a run
+ * takes no more than a second. */
 dvi_status order_extend(const study_subject *subject, result_table *rows, order_result *result);
 
 /** Fill in the columns of the table, which end with one without a title. */
