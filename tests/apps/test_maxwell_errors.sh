@@ -382,12 +382,12 @@ no() {
     says err "$words" "$* of $method"
   done
 }
-for option in verify project; do no 'is a march of a field' --$option; done
-no 'is a march of a field' --momenta 1,2
-no 'is a march of a field' --time-transform arclength
-no 'is a march of a field' --step-control arclength
-no 'is a march of a field' --events hits.csv
-no 'is a march of a field' --alarm energy:1
+for option in verify project; do no 'a march of a field' --$option; done
+no 'a march of a field' --momenta 1,2
+no 'a march of a field' --time-transform arclength
+no 'a march of a field' --step-control arclength
+no 'a march of a field' --events hits.csv
+no 'a march of a field' --alarm energy:1
 no 'goes forward' --h 0
 no 'goes forward' --h -0.1
 no 'goes forward' --t-end -1

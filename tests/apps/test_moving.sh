@@ -37,6 +37,13 @@ says out '^t,x_1,u_64$' 'the names of positions and values'
 expect 0 'a check' check ring.yaml
 says out '^derivatives: ' 'the derivatives are right'
 
+# What a run would not look at is refused.
+{ cat ring.yaml; echo 'final: {u: 1}'; } >final.yaml
+expect 2 'an end' run final.yaml
+says err "'final' is not for meshes that move" 'no paths'
+expect 2 'a lattice' run ring.yaml --method multisymplectic
+says err 'no mesh that moves' 'multisymplectic steps'
+
 # Maps have places that rest, past which the nodes run.
 expect 0 'a map' run ring.yaml --final --map ring.svg
 says err 'draws u over x and t' 'what it draws'

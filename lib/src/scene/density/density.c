@@ -262,9 +262,19 @@ static void set_form(dvi_scene *scene)
 }
 
 /* Make a field that has no space. */
+/* Meshes that move and fields of rotations have no paths between two times. */
+static bool refuse_final(dvi_scene *scene)
+{
+  const dvi__tree *final = dvi__tree_find(scene->tree, "final");
+  return final == NULL ||
+         dvi__scene_refuse(scene, final->span, "'final' is not for %s",
+                           scene->density->moving != NULL ? "meshes that move"
+                                                          : "fields of rotations");
+}
+
 static bool make_other(dvi_scene *scene)
 {
-  const bool good = check_motion(scene) &&
+  const bool good = refuse_final(scene) && check_motion(scene) &&
                     (scene->density->moving != NULL ? dvi__moving_make(scene)
                                                     : dvi__rotations_make(scene)) &&
                     dvi__density_make_probes(scene) && dvi__choose_field_columns(scene) &&

@@ -24,6 +24,14 @@ const char *dvi__lattice_refused(const dvi_scene *scene, const char **section)
     *section = "mesh";
     return "multisymplectic steps have cells in space and time, and a mesh has none: give a domain";
   }
+  if (s->moving != NULL) {
+    *section = "moving";
+    return "multisymplectic steps have cells in space and time at rest, and no mesh that moves";
+  }
+  if (s->jets.is_rotation) {
+    *section = "fields";
+    return "multisymplectic steps are for fields of numbers; 'lie-verlet' takes those of rotations";
+  }
   for (int d = 0; d < s->jets.dimension; d++)
     if (!dvi__axis_is_linear(s->axis[d].kind)) {
       *section = "space";
