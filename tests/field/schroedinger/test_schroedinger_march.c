@@ -403,9 +403,8 @@ START_TEST(resonances_grow_beyond_the_bound)
   (void)noise_after(cases[_i].kind, cases[_i].method, 4, 1e-3, &bound);
   ck_assert_double_lt(noise_after(cases[_i].kind, cases[_i].method, 4, 0.985 * bound, &unused),
                       1e-7);
-  ck_assert_double_gt(noise_after(cases[_i].kind, cases[_i].method, 4, cases[_i].above * bound,
-                                  &unused),
-                      1e-7);
+  ck_assert_double_gt(
+      noise_after(cases[_i].kind, cases[_i].method, 4, cases[_i].above * bound, &unused), 1e-7);
 }
 END_TEST
 

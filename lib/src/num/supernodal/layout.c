@@ -1,7 +1,6 @@
 /* Which columns make a supernode, and which rows it has. */
 #include "num/supernodal/layout.h"
 
-
 #include "core/memory.h"
 #include "core/status.h"
 
