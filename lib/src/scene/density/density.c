@@ -266,9 +266,10 @@ static void set_form(dvi_scene *scene)
 static bool refuse_final(dvi_scene *scene)
 {
   const dvi__tree *final = dvi__tree_find(scene->tree, "final");
-  return final == NULL || dvi__scene_refuse(scene, final->span, "'final' is not for %s",
-                                            scene->density->moving != NULL ? "meshes that move"
-                                                                           : "fields of rotations");
+  return final == NULL || dvi__scene_refuse(scene, final->span, "%s",
+                                            scene->density->moving != NULL
+                                                ? "'final' is not for meshes that move"
+                                                : "'final' is not for fields of rotations");
 }
 
 static bool make_other(dvi_scene *scene)
