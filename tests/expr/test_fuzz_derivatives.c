@@ -49,6 +49,16 @@ static dvi__op op_of(char letter)
   return found == NULL ? DVI__OP_COUNT : (dvi__op)(found - letters);
 }
 
+/* Makes a condition, 0 or 1, of a node, unless it is one: only these stand before WHERE. */
+static dvi__node condition(dvi__node a)
+{
+  const dvi__graph_node *node = graph.node + a;
+  const int is_not = node->op == DVI__OP_SUBTRACT && graph.node[node->a].op == DVI__OP_CONSTANT &&
+                     !(graph.node[node->a].value < 1 || graph.node[node->a].value > 1) &&
+                     graph.node[node->b].op == DVI__OP_POSITIVE;
+  return node->op == DVI__OP_POSITIVE || is_not ? a : dvi__apply(&graph, DVI__OP_POSITIVE, a, 0);
+}
+
 /* Takes a letter, and returns the number of open nodes. */
 static int take_operation(char letter, char next, dvi__node *open, int count)
 {
@@ -71,6 +81,7 @@ static int take_operation(char letter, char next, dvi__node *open, int count)
   }
   if (op == DVI__OP_COUNT || count < dvi__operands(op)) return count;
   if (dvi__operands(op) == 2) count--;
+  if (op == DVI__OP_WHERE) open[count - 1] = condition(open[count - 1]);
   open[count - 1] = dvi__apply(&graph, op, open[count - 1], open[count]);
   return count;
 }
