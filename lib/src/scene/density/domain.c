@@ -202,14 +202,15 @@ static bool add_name(dvi_scene *scene, const char *name, dvi__span span, int ran
                      int size)
 {
   const int number = scene->coordinate_count++;
-  scene->coordinate[number] = (dvi__coordinate){.name = name,
-                                                .span = span,
-                                                .kind = DVI__LINES,
-                                                .size = 1,
-                                                .columns = 1,
-                                                .shape = {rank, size, 1},
-                                                .q = {first, size, size},
-                                                .v = {first, size, size}};
+  scene->coordinate[number] = (dvi__coordinate){
+      .name = name,
+      .span = span,
+      .kind = DVI__LINES,
+      .size = 1,
+      .columns = 1,
+      .shape = {rank, size, 1},
+      .q = {.first = first, .stride = size, .components = size},
+      .v = {.first = first, .stride = size, .components = size}};
   return dvi__names_add(&scene->names, &scene->arena, scene->complaint, name, span, DVI__COORDINATE,
                         number);
 }

@@ -90,7 +90,7 @@ int dvi__moving_place_derivative(int count, double t, const double *x, const dou
 {
   const dvi__scene_moving *m = user;
   const int axes = m->density->jets.dimension;
-  int failed = 0, same[MOST];
+  int failed = 0, same[MOST] = {0};
   for (int k = 0; k < m->placed->variables; k++) same[k] = same_variable(m, k);
   clear(axes * count, l_x);
   clear(axes * m->whole->variables * count, l_xz);

@@ -297,8 +297,8 @@ static bool declare_unknowns(dvi_scene *scene)
                          .size = nodes,
                          .columns = 1,
                          .shape = {2, 3, 3},
-                         .q = {0, ENTRIES, ENTRIES},
-                         .v = {0, NUMBERS, NUMBERS}};
+                         .q = {.first = 0, .stride = ENTRIES, .components = ENTRIES},
+                         .v = {.first = 0, .stride = NUMBERS, .components = NUMBERS}};
   scene->coordinate = x;
   scene->coordinate_count = 1;
   for (int k = 0; k < scene->names.count; k++)

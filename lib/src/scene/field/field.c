@@ -77,8 +77,8 @@ bool dvi__declare_unknowns(dvi_scene *scene, const dvi__tree *section, const cha
                          .size = scene->n,
                          .columns = 1,
                          .shape = {0, 1, 1},
-                         .q = {0, 1, 1},
-                         .v = {0, 1, 1}};
+                         .q = {.first = 0, .stride = 1, .components = 1},
+                         .v = {.first = 0, .stride = 1, .components = 1}};
   scene->coordinate = u;
   scene->coordinate_count = 1;
   return true;

@@ -84,15 +84,16 @@ static bool add_coordinate(dvi_scene *scene, const char *name, dvi__span span, i
     return dvi__complain(scene->complaint, DVI_BAD_SIZE, span, "more than %d coordinates",
                          COORDINATES_MAX);
   const int size = rows * columns;
-  *x = (dvi__coordinate){.name = name,
-                         .span = span,
-                         .kind = as->kind,
-                         .family = family,
-                         .size = size,
-                         .columns = columns,
-                         .shape = as->shape,
-                         .q = {scene->n, as->stored, as->stored},
-                         .v = {scene->nv, as->velocities, as->velocities}};
+  *x = (dvi__coordinate){
+      .name = name,
+      .span = span,
+      .kind = as->kind,
+      .family = family,
+      .size = size,
+      .columns = columns,
+      .shape = as->shape,
+      .q = {.first = scene->n, .stride = as->stored, .components = as->stored},
+      .v = {.first = scene->nv, .stride = as->velocities, .components = as->velocities}};
   scene->n += size * as->stored;
   scene->nv += size * as->velocities;
   scene->coordinate_count++;
