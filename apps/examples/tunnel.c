@@ -61,7 +61,7 @@ static dvi_status condense(const dvi_space *line)
 {
   const dvi_schroedinger_terms terms = {
       .size = sizeof terms, .space = line, .potential = trap, .interaction = 10};
-  dvi_schroedinger_ground_report state;
+  dvi_schroedinger_ground_report state = {0};
   dvi_schroedinger *gas = NULL;
   dvi_status status = dvi_schroedinger_create(&terms, &gas);
   if (!status) status = dvi_schroedinger_ground(gas, 1, &state, NULL);
