@@ -278,17 +278,22 @@ START_TEST(prescribed_nodes_keep_affine_fields)
 }
 END_TEST
 
+static dvi_moving_terms torus_terms(dvi_mesh *mesh)
+{
+  return (dvi_moving_terms){.size = sizeof(dvi_moving_terms),
+                            .mesh = mesh,
+                            .part = &plane_wave,
+                            .translations = 1,
+                            .mu = 1,
+                            .jump = affine_jump};
+}
+
 START_TEST(periodic_fields_repeat_with_their_jumps)
 {
   const dvi_generator_options torus = {
       .size = sizeof torus, .cells = {5, 4}, .extent = {1, 1}, .periodic = {1, 1}};
   dvi_mesh *mesh = plane_mesh(&torus, shake, NULL);
-  const dvi_moving_terms terms = {.size = sizeof terms,
-                                  .mesh = mesh,
-                                  .part = &plane_wave,
-                                  .translations = 1,
-                                  .mu = 1,
-                                  .jump = affine_jump};
+  const dvi_moving_terms terms = torus_terms(mesh);
   double q[60], x[128], u[64];
   dvi_moving *moving = NULL;
   ck_assert_msg(!dvi_moving_create(&terms, &moving), "%s", dvi_last_error());
@@ -325,12 +330,7 @@ START_TEST(functions_have_rates_at_places_and_integrals)
   const dvi_density_part function = {
       .variable = variable, .variables = 2, .density = rate_and_slope};
   dvi_mesh *mesh = plane_mesh(&torus, shake, NULL), *now = NULL;
-  const dvi_moving_terms terms = {.size = sizeof terms,
-                                  .mesh = mesh,
-                                  .part = &plane_wave,
-                                  .translations = 1,
-                                  .mu = 1,
-                                  .jump = affine_jump};
+  const dvi_moving_terms terms = torus_terms(mesh);
   const double at[2] = {7.3, -2.2};
   double q[60], v[60], f, node[40];
   int nodes;

@@ -266,9 +266,6 @@ int64_t dvi__integral_entries(const dvi__integral *integral, const dvi__pattern 
 /* Make the one-form's gauge and refuse a singular two-form. */
 dvi_status dvi__density_fix_gauge(dvi_density *density);
 dvi_status dvi__density_check_two_form(dvi_density *density);
-
-/* Make the two-form of the gradients. */
-dvi_status dvi__density_two_form(const dvi_density *density, dvi__csr *Omega);
 dvi_status dvi__density_make_one_form(dvi_density *density);
 
 /* Make the terms of a system. */

@@ -81,19 +81,17 @@ static int is_skew(const dvi__csr *gradients)
 
 static dvi_status find_of_two_form(dvi_density *density)
 {
-  const dvi_matrix K = dvi__csr_view(&density->stiffness, 1);
-  dvi__csr Omega = {0};
+  const dvi_matrix K = dvi__csr_view(&density->stiffness, 1),
+                   half = dvi__csr_view(&density->gradients, 0);
   dvi__definite solver = {0};
   if (!density->is_linear || density->gradients.rows == 0 || !is_skew(&density->gradients))
     return DVI_OK;
   double *room = DVI_NEW(double, 3 * density->unknowns);
-  dvi_status status = room != NULL ? dvi__density_two_form(density, &Omega)
+  dvi_status status = room != NULL ? dvi__regular_create(&half, &solver)
                                    : dvi__fail(DVI_NO_MEMORY, "density: no memory for a frequency");
-  const dvi_matrix two_form = dvi__csr_view(&Omega, 0);
-  if (status == DVI_OK) status = dvi__regular_create(&two_form, &solver);
   if (status == DVI_OK) status = iterate(&K, &solver, room, &density->fastest);
+  density->fastest /= 2; /* skew gradients are half of the two-form, up to the sign */
   dvi__definite_clear(&solver);
-  dvi__csr_clear(&Omega);
   dvi__release(room);
   return status;
 }

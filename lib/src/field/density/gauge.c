@@ -132,7 +132,7 @@ static dvi_status refuse_odd(const dvi_density *density)
 }
 
 /* Omega is minus the gradients of alpha, row by row, and their transpose. */
-dvi_status dvi__density_two_form(const dvi_density *density, dvi__csr *Omega)
+static dvi_status two_form_of(const dvi_density *density, dvi__csr *Omega)
 {
   const dvi_matrix gradients = dvi__csr_view(&density->gradients, 0);
   double *minus = DVI_NEW(double, gradients.rows);
@@ -158,7 +158,7 @@ static dvi_status check_regular(const dvi_density *density)
 {
   dvi__csr Omega = {0};
   dvi__definite solver = {0};
-  DVI_TRY(dvi__density_two_form(density, &Omega));
+  DVI_TRY(two_form_of(density, &Omega));
   const dvi_matrix two_form = dvi__csr_view(&Omega, 0);
   const dvi_status status = dvi__regular_create(&two_form, &solver);
   dvi__definite_clear(&solver);

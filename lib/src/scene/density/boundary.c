@@ -96,7 +96,7 @@ static bool add_one(dvi_scene *scene, const extent *of, int component, dvi_condi
     condition.datum = datum;
     condition.rate = local->has_time ? datum_rate : NULL;
     condition.user = local;
-    if (local->has_place) scene->density->has_placed_data = true;
+    if (local->axes != 0) scene->density->has_placed_data = true;
   }
   return add_condition(scene, condition) != NULL;
 }

@@ -198,23 +198,6 @@ static bool name_components(dvi_scene *scene, const dvi__declared_field *field)
   return true;
 }
 
-static bool add_name(dvi_scene *scene, const char *name, dvi__span span, int rank, int first,
-                     int size)
-{
-  const int number = scene->coordinate_count++;
-  scene->coordinate[number] = (dvi__coordinate){
-      .name = name,
-      .span = span,
-      .kind = DVI__LINES,
-      .size = 1,
-      .columns = 1,
-      .shape = {rank, size, 1},
-      .q = {.first = first, .stride = size, .components = size},
-      .v = {.first = first, .stride = size, .components = size}};
-  return dvi__names_add(&scene->names, &scene->arena, scene->complaint, name, span, DVI__COORDINATE,
-                        number);
-}
-
 static bool name_place(dvi_scene *scene)
 {
   struct dvi__scene_density *s = scene->density;
@@ -228,11 +211,11 @@ static bool name_place(dvi_scene *scene)
     return dvi__scene_no_memory(scene);
   scene->jets = &s->jets;
   for (int d = 0; d < dimension; d++)
-    if (!add_name(scene, s->jets.axis[d], s->axis_span[d], 0, d, 1)) return false;
+    if (!dvi__add_lines(scene, s->jets.axis[d], s->axis_span[d], 0, d, 1)) return false;
   for (int i = 0; i < s->fields; i++) {
     const dvi__declared_field *field = s->field + i;
-    if (!add_name(scene, field->name, field->span, field->is_vector, dimension + field->first,
-                  field->components) ||
+    if (!dvi__add_lines(scene, field->name, field->span, field->is_vector, dimension + field->first,
+                        field->components) ||
         !name_components(scene, field))
       return false;
     if (field->is_rotation)

@@ -63,7 +63,6 @@ static bool convert_input(dvi_scene *scene, dvi__local *local, const dvi__kernel
   if (from->block == DVI__TIME) {
     local->has_time = true;
   } else if (!dvi__jet_at(scene->jets, number, &jet.component, jet.order) && !local->is_placed) {
-    local->has_place = true;
     local->axes |= 1U << number;
     *to = (dvi__kernel_input){.block = PLACE, .base = number};
   } else {
@@ -295,7 +294,7 @@ static int evaluate_part(const dvi__local *local, int64_t all, int64_t from, int
                          const double *x, const double *z, results to)
 {
   double place[ROOM], variable[ROOM], first[ROOM], second[ROOM];
-  if (local->has_place) copy_points(local->dimension, all, from, count, x, place);
+  if (local->axes != 0) copy_points(local->dimension, all, from, count, x, place);
   copy_points(local->variables, all, from, count, z, variable);
   const results part = {to.l != NULL ? to.l + from : NULL, to.l_z != NULL ? first : NULL,
                         to.l_zz != NULL ? second : NULL, to.l_t != NULL ? to.l_t + from : NULL,

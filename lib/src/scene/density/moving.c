@@ -203,7 +203,7 @@ bool dvi__moving_take_density(dvi__context *c, dvi__node root)
   dvi__scene_moving *m = c->scene->density->moving;
   if (!dvi__kernels_add_node(c, root, &list) || !dvi__local_make(c->scene, &list, &m->whole))
     return false;
-  if (!m->whole->has_place || m->terms.motion == DVI_MOVING_PRESCRIBED) return true;
+  if (m->whole->axes == 0 || m->terms.motion == DVI_MOVING_PRESCRIBED) return true;
   m->terms.space_derivative = dvi__moving_place_derivative;
   return dvi__kernels_add_node(c, root, &list) &&
          dvi__local_make_placed(c->scene, &list, &m->placed);

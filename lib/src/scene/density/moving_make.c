@@ -60,7 +60,7 @@ static bool take_ends(dvi_scene *scene)
  * in fields that are linear in a cell. The rules of triangles have the degrees 2 and 4. */
 static int choose_points(const struct dvi__scene_density *s)
 {
-  const bool is_known = s->degree >= 0 && s->is_uniform;
+  const bool is_known = s->degree >= 0 && s->placed_axes == 0;
   if (s->jets.dimension == 2)
     return is_known && s->degree <= 2 ? TRIANGLE_OF_SQUARES : TRIANGLE_OF_OTHERS;
   if (!is_known) return POINTS_OF_OTHERS;
@@ -128,7 +128,7 @@ static dvi_status create_on(dvi_scene *scene, const dvi_mesh *mesh)
   if (mesh == NULL) take_axis(s, terms);
   terms->components = s->jets.components;
   terms->part = &part;
-  terms->translations = s->is_uniform;
+  terms->translations = s->placed_axes == 0;
   if (terms->points == 0) terms->points = choose_points(s);
   terms->user = m;
   const dvi_status status = dvi_moving_create(terms, &m->made);

@@ -42,9 +42,8 @@ int dvi__moving_value(const dvi_scene *scene, const dvi__local *function, bool h
                                  .variables = function->variables,
                                  .density = function->term != NULL ? dvi__local_density : zero,
                                  .user = (void *)function};
-  double *v = has_rates ? dvi__heap_take((size_t)scene->n, sizeof *v) : NULL;
-  if (has_rates && v == NULL) return DVI_NO_MEMORY;
-  dvi_status status = has_rates ? dvi_system_velocity(dvi_scene_system(scene), t, q, p, v) : DVI_OK;
+  double *v = NULL;
+  dvi_status status = has_rates ? dvi__density_velocity(scene, t, q, p, &v) : DVI_OK;
   if (status == DVI_OK) status = dvi_moving_measure(moving, t, q, v, &part, x, value);
   dvi__heap_free(v);
   return (int)status;

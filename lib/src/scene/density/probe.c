@@ -106,15 +106,21 @@ typedef struct state {
   double *U, *rate, *z, *f;
 } state;
 
+dvi_status dvi__density_velocity(const dvi_scene *scene, double t, const double *q, const double *p,
+                                 double **v)
+{
+  const dvi_system *system = dvi_scene_system(scene);
+  *v = dvi__heap_take((size_t)scene->nv, sizeof **v);
+  if (*v == NULL) return DVI_NO_MEMORY;
+  return system == NULL ? DVI_UNSUPPORTED : dvi_system_velocity(system, t, q, p, *v);
+}
+
 /* Find the rates of all coefficients. */
 static dvi_status find_rates(const dvi_scene *scene, double t, const double *q, const double *p,
                              double *rate)
 {
-  const dvi_system *system = dvi_scene_system(scene);
-  double *v = dvi__heap_take((size_t)scene->n, sizeof *v);
-  dvi_status status = v == NULL        ? DVI_NO_MEMORY
-                      : system == NULL ? DVI_UNSUPPORTED
-                                       : dvi_system_velocity(system, t, q, p, v);
+  double *v;
+  dvi_status status = dvi__density_velocity(scene, t, q, p, &v);
   if (status == DVI_OK) status = dvi_density_lift_rate(scene->density->density, t, v, rate);
   dvi__heap_free(v);
   return status;

@@ -67,11 +67,8 @@ bool dvi__rotations_check_probe(dvi_scene *scene, const dvi__local *function, co
 static dvi_status find_turn(const dvi_scene *scene, double t, int node, const double *q,
                             const double *p, double *omega)
 {
-  const dvi_system *system = dvi_scene_system(scene);
-  double *v = dvi__heap_take((size_t)scene->nv, sizeof *v);
-  const dvi_status status = v == NULL        ? DVI_NO_MEMORY
-                            : system == NULL ? DVI_UNSUPPORTED
-                                             : dvi_system_velocity(system, t, q, p, v);
+  double *v;
+  const dvi_status status = dvi__density_velocity(scene, t, q, p, &v);
   if (status == DVI_OK) memcpy(omega, v + (ptrdiff_t)NUMBERS * node, NUMBERS * sizeof *omega);
   dvi__heap_free(v);
   return status;

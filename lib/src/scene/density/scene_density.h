@@ -17,7 +17,7 @@
 typedef struct dvi__local {
   dvi__scene_term *term;
   int dimension;
-  bool has_time, has_place;
+  bool has_time;
   unsigned axes;  /* bit a is 1 if it depends on the position along axis a */
   bool is_placed; /* the position is a variable */
   int variables;
@@ -116,7 +116,6 @@ struct dvi__scene_density {
   dvi__local *part[DVI__DENSITY_CLASSES]; /* NULL for classes without summands */
   int summands[DVI__DENSITY_CLASSES];
   int degree;                    /* of the density in the fields, or -1 if no polynomial */
-  bool is_uniform;               /* the density does not depend on position */
   unsigned placed_axes;          /* bit a is 1 if it depends on the position along axis a */
   bool is_static;                /* it has no rates */
   char chosen[DVI_AXES_MAX][96]; /* kinds of the axes, with the points chosen here */
@@ -134,6 +133,10 @@ struct dvi__scene_density {
 /* Read the section final, if there is one, and make the end of it. */
 bool dvi__density_read_final(dvi_scene *scene);
 bool dvi__density_make_final(dvi_scene *scene);
+
+/* Find the velocities [nv] of a state, which the caller frees in any case. */
+dvi_status dvi__density_velocity(const dvi_scene *scene, double t, const double *q, const double *p,
+                                 double **v);
 
 /* Return the number of components of all fields. */
 static inline int dvi__components(const dvi_scene *scene)

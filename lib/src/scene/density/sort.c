@@ -211,7 +211,6 @@ static bool make_part(sorting *s, int class)
     return false;
   if (local->term == NULL) return true;
   density->part[class] = local;
-  density->is_uniform = density->is_uniform && !local->has_place;
   density->placed_axes |= local->axes;
   return class != DVI_DENSITY_ONE_FORM || !local->has_time ||
          dvi__scene_refuse(scene, density->section->span,
@@ -276,7 +275,6 @@ bool dvi__density_sort(dvi__context *c, dvi__node root)
   if (good) prepare(&s, root, has_field, degree, input);
   good = good && gather(&s, root, NULL, false);
   join_classes(&s);
-  density->is_uniform = true;
   density->placed_axes = 0;
   for (int k = 0; k < DVI__DENSITY_CLASSES && good; k++) good = make_part(&s, k);
   density->is_static = density->part[DVI_DENSITY_KINETIC] == NULL &&

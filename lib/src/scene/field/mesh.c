@@ -112,19 +112,9 @@ static bool read_file(dvi_scene *scene, const dvi__tree *section, const dvi__tre
 
 static bool add_name(dvi_scene *scene, const char *name, dvi__span span, int rank, int size)
 {
-  const int number = scene->coordinate_count++;
-  scene->coordinate[number] = (dvi__coordinate){
-      .name = name,
-      .span = span,
-      .kind = DVI__LINES,
-      .size = 1,
-      .columns = 1,
-      .shape = {rank, size, 1},
-      .q = {.first = scene->n, .stride = size, .components = size},
-      .v = {.first = scene->n, .stride = size, .components = size}};
+  const int first = scene->n;
   scene->n += size;
-  return dvi__names_add(&scene->names, &scene->arena, scene->complaint, name, span, DVI__COORDINATE,
-                        number);
+  return dvi__add_lines(scene, name, span, rank, first, size);
 }
 
 static bool name_place(dvi_scene *scene, const dvi__tree *section)

@@ -147,3 +147,20 @@ bool dvi__read_coordinates(dvi_scene *scene, const dvi__tree *section)
   scene->zeros = dvi__arena_take(&scene->arena, 2 * (size_t)scene->n, sizeof *scene->zeros);
   return scene->zeros != NULL ? dvi__labels_differ(scene) : dvi__scene_no_memory(scene);
 }
+
+bool dvi__add_lines(dvi_scene *scene, const char *name, dvi__span span, int rank, int first,
+                    int size)
+{
+  const dvi__slots slots = {.first = first, .stride = size, .components = size};
+  const int number = scene->coordinate_count++;
+  scene->coordinate[number] = (dvi__coordinate){.name = name,
+                                                .span = span,
+                                                .kind = DVI__LINES,
+                                                .size = 1,
+                                                .columns = 1,
+                                                .shape = {rank, size, 1},
+                                                .q = slots,
+                                                .v = slots};
+  return dvi__names_add(&scene->names, &scene->arena, scene->complaint, name, span, DVI__COORDINATE,
+                        number);
+}

@@ -46,6 +46,10 @@ bool dvi__tree_number(dvi_scene *scene, const dvi__tree *tree, const char *what,
 bool dvi__tree_whole(dvi_scene *scene, const dvi__tree *tree, const char *what, int least,
                      int *number);
 
+/* Add a coordinate of `size` numbers from `first` on, a number (rank 0) or a vector (rank 1). */
+bool dvi__add_lines(dvi_scene *scene, const char *name, dvi__span span, int rank, int first,
+                    int size);
+
 /* Read one of some words. */
 bool dvi__tree_word(dvi_scene *scene, const dvi__tree *tree, const char *what, int count,
                     const char *const *word, int *which);
