@@ -24,7 +24,7 @@ static void find_rest_force(const dvi_elastic *e, int64_t cell, const double *u,
 {
   const int n = e->n;
   const double *g = e->gradient + cell * (n + 1) * n;
-  double H[DVI__SOLID_ENTRIES], P[DVI__SOLID_ENTRIES];
+  double H[DVI__SOLID_ENTRIES] = {0}, P[DVI__SOLID_ENTRIES] = {0};
   dvi__solid_strain(e, cell, u, H);
   find_rest_stress(n, e->materials[e->material[cell]].rest, H, P);
   for (int a = 0; a <= n; a++)
@@ -53,7 +53,7 @@ static int share_force(const dvi_elastic *e, dvi__solid_share share, int64_t cel
 static int share_energy(const dvi_elastic *e, dvi__solid_share share, int64_t cell, const double *u,
                         double *energy)
 {
-  double f[NUMBERS];
+  double f[NUMBERS] = {0};
   *energy = 0;
   if (share != DVI__SOLID_STIFFNESS) {
     const int returned = dvi__solid_stored(e, cell, u, energy);
@@ -257,7 +257,7 @@ dvi_status dvi__solid_make_pull(dvi__solid_system *s)
   s->pull = DVI_NEW(double, e->unknowns);
   if (s->pull == NULL) return dvi__fail(DVI_NO_MEMORY, "elastic: no memory for a system");
   for (int64_t c = 0; c < e->cells; c++) {
-    double u[NUMBERS], f[NUMBERS], energy;
+    double u[NUMBERS], f[NUMBERS] = {0}, energy;
     dvi__solid_gather(e, c, e->steady, u);
     (void)share_force(e, DVI__SOLID_STIFFNESS, c, u, f);
     (void)share_energy(e, DVI__SOLID_STIFFNESS, c, u, &energy);
@@ -346,7 +346,7 @@ dvi_status dvi__solid_make_load(dvi__solid_system *s)
   s->load = DVI_NEW(double, e->unknowns);
   if (s->load == NULL) return dvi__fail(DVI_NO_MEMORY, "elastic: no memory for loads");
   for (int64_t c = 0; c < e->cells; c++) {
-    double u[NUMBERS], f[NUMBERS] = {0};
+    double u[NUMBERS] = {0}, f[NUMBERS] = {0};
     const int returned = dvi__solid_add_load(e, c, 0, f);
     if (returned != 0)
       return dvi__fail(DVI_CALLBACK_FAILED, "elastic: a load returned %d at cell %lld", returned,
