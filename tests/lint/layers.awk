@@ -64,6 +64,7 @@ BEGIN {
   sees["field/multisymplectic"] = "core num march field/algebra"
   sees["field/moving"] = "core num field/mesh field/space"
   sees["field/rotations"] = "core field/algebra"
+  sees["field/regge"] = "core num field/algebra field/mesh"
   # The library of scenes includes libdvi's public headers, too.
   sees["text"] = ""
   sees["expr"] = "text"
