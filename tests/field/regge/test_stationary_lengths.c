@@ -186,7 +186,7 @@ START_TEST(failures_leave_the_lengths_and_name_the_reason)
   dvi_regge_report report;
   for (int e = 0; e < 4; e++) f.length[e] = 0.8 + 0.1 * e;
   ck_assert_int_eq(dvi_regge_solve(f.regge, &options, f.length, &report), DVI_NOT_CONVERGED);
-  check_words("after 1 iterations: start from lengths nearer to a solution");
+  check_words("(iterations: 1): start from lengths nearer to a solution");
   ck_assert_double_eq_tol(f.length[3], 1.1, 0.0000001);
   ck_assert_double_ge(report.residual, 1e-3);
   options.iterations = -1;
@@ -212,6 +212,18 @@ START_TEST(a_problem_without_a_solution_is_reported)
 }
 END_TEST
 
+/* sum_e l_e dS/dl_e = (n-2) S. */
+START_TEST(a_closed_complex_without_lambda_has_no_stationary_lengths)
+{
+  dvi_mesh *mesh = NULL;
+  ck_assert_int_eq(dvi_mesh_generate("cell-16", NULL, &mesh), DVI_OK);
+  fixture f = of_mesh(mesh, 0);
+  ck_assert_int_eq(dvi_regge_solve(f.regge, NULL, f.length, NULL), DVI_NOT_CONVERGED);
+  check_words("only S = 0 is stationary");
+  clear(&f);
+}
+END_TEST
+
 SUITE(stationary_lengths)
 {
   tcase_add_test(tests, a_convex_boundary_is_filled_by_flat_space);
@@ -221,4 +233,5 @@ SUITE(stationary_lengths)
   tcase_add_test(tests, lengths_may_be_held_one_by_one);
   tcase_add_test(tests, failures_leave_the_lengths_and_name_the_reason);
   tcase_add_test(tests, a_problem_without_a_solution_is_reported);
+  tcase_add_test(tests, a_closed_complex_without_lambda_has_no_stationary_lengths);
 }

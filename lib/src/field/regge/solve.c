@@ -223,17 +223,21 @@ static dvi_status search_line(search *s, int *falls, dvi_status *refused)
   return DVI_OK;
 }
 
+/* The sum of l_e dS/dl_e is (n-2) S without Lambda. */
 static dvi_status refuse(const search *s, int iterations, dvi_status refused)
 {
+  const int is_free = s->regge->lambda == 0 && s->unknowns == s->regge->edges;
   if (refused == DVI_OK)
     return dvi__fail(DVI_NOT_CONVERGED,
-                     "regge: Newton's method left a gradient of %.2g after %d iterations: start "
-                     "from lengths nearer to a solution",
-                     s->size, iterations);
-  return dvi__fail_in(DVI_NOT_CONVERGED,
-                      "regge: Newton's method left a gradient of %.2g after %d iterations, and its "
-                      "next step leads to lengths that do not exist",
-                      s->size, iterations);
+                     "regge: Newton's method left a gradient of %.2g (iterations: %d): %s", s->size,
+                     iterations,
+                     is_free ? "without Lambda and without held lengths only S = 0 is stationary"
+                             : "start from lengths nearer to a solution");
+  return dvi__fail_in(
+      DVI_NOT_CONVERGED,
+      "regge: Newton's method left a gradient of %.2g (iterations: %d), and its next "
+      "step leads to lengths that do not exist",
+      s->size, iterations);
 }
 
 static dvi_status iterate(search *s, int most, int *iterations)
