@@ -56,6 +56,12 @@ typedef struct search {
   double size, terms; /* |g|, and that of the sizes of its terms */
 } search;
 
+static dvi_status no_memory(void)
+{
+  (void)dvi__fail(DVI_NO_MEMORY, "regge: no memory for Newton's method");
+  return DVI_NO_MEMORY;
+}
+
 /* ---- the system ---- */
 
 static dvi_status choose_unknowns(search *s, const int8_t *held)
@@ -82,8 +88,7 @@ static dvi_status choose_entries(search *s)
   p->start = DVI_NEW(int, s->unknowns + 1);
   p->row = DVI_NEW(int, all->start[all->rows]);
   s->place = DVI_NEW(int64_t, all->start[all->rows]);
-  if (p->start == NULL || p->row == NULL || s->place == NULL)
-    return dvi__fail(DVI_NO_MEMORY, "regge: no memory for Newton's method");
+  if (p->start == NULL || p->row == NULL || s->place == NULL) return no_memory();
   int count = 0;
   for (int64_t u = 0; u < s->unknowns; u++) {
     for (int64_t i = all->start[s->edge[u]]; i < all->start[s->edge[u] + 1]; i++) {
@@ -113,7 +118,7 @@ static dvi_status allocate(search *s)
   if (s->value == NULL || s->rhs == NULL || s->length == NULL || s->trial == NULL ||
       s->sums.deficit == NULL || s->sums.size == NULL || s->sums.gradient == NULL ||
       s->sums.terms == NULL || s->sums.hessian == NULL)
-    return dvi__fail(DVI_NO_MEMORY, "regge: no memory for Newton's method");
+    return no_memory();
   return dvi__linear_create(&s->pattern, DVI__LINEAR_COMPLEX, NULL, &s->linear);
 }
 
@@ -121,8 +126,7 @@ static dvi_status prepare(search *s, const int8_t *held)
 {
   s->unknown = DVI_NEW(int, s->regge->edges);
   s->edge = DVI_NEW(int, s->regge->edges);
-  if (s->unknown == NULL || s->edge == NULL)
-    return dvi__fail(DVI_NO_MEMORY, "regge: no memory for Newton's method");
+  if (s->unknown == NULL || s->edge == NULL) return no_memory();
   DVI_TRY(choose_unknowns(s, held));
   DVI_TRY(choose_entries(s));
   return allocate(s);
@@ -240,10 +244,27 @@ static dvi_status refuse(const search *s, int iterations, dvi_status refused)
       s->size, iterations);
 }
 
+/* Without held lengths, make the action (c^(n-2) S_0 - c^n Lambda V) stationary in their scale c
+ * first, because the gradient also vanishes as all lengths shrink to 0. */
+static dvi_status choose_scale(search *s)
+{
+  const dvi_regge *r = s->regge;
+  dvi__regge_sums sums = s->sums;
+  sums.gradient = sums.terms = sums.hessian = NULL;
+  if (s->unknowns < r->edges) return DVI_OK;
+  DVI_TRY(dvi__regge_evaluate(r, s->length, &sums));
+  const double volume = r->lambda * sums.volume,
+               square = (r->n - 2) * (sums.action + volume) / (r->n * volume);
+  if (!(square > 0) || !isfinite(square)) return DVI_OK;
+  for (int64_t e = 0; e < r->edges; e++) s->length[e] *= sqrt(square);
+  return DVI_OK;
+}
+
 static dvi_status iterate(search *s, int most, int *iterations)
 {
   dvi_status refused = DVI_OK;
   int falls = 1;
+  DVI_TRY(choose_scale(s));
   DVI_TRY(evaluate(s, s->length, 1));
   for (*iterations = 0; s->size > roundoff * s->terms && falls && *iterations < most;
        ++*iterations) {
