@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/memory.h"
 #include "support/suite.h"
 
 static const double pi = 3.14159265358979323846;
@@ -287,6 +288,34 @@ START_TEST(meshes_of_other_cells_are_refused)
 }
 END_TEST
 
+/* Allocate one block less each time, until the call succeeds. */
+START_TEST(no_memory_is_reported)
+{
+  dvi_mesh *mesh = NULL;
+  dvi_matrix *hessian = NULL;
+  dvi_regge_measures m;
+  int failures = 0;
+  ck_assert_int_eq(dvi_mesh_generate("cell-16", NULL, &mesh), DVI_OK);
+  const dvi_regge_terms terms = {.size = sizeof terms, .mesh = mesh};
+  for (dvi_status status = DVI_NO_MEMORY; status != DVI_OK; failures++) {
+    dvi_regge *regge = NULL;
+    double length[24], action;
+    for (int e = 0; e < 24; e++) length[e] = 1;
+    dvi__fail_allocations_after(failures);
+    status = dvi_regge_create(&terms, &regge);
+    if (status == DVI_OK) status = dvi_regge_action(regge, length, &action, NULL);
+    if (status == DVI_OK) status = dvi_regge_measure(regge, length, &m);
+    if (status == DVI_OK) status = dvi_regge_hessian_create(regge, length, &hessian);
+    dvi__fail_allocations_after(-1);
+    if (status != DVI_OK) ck_assert_int_eq(status, DVI_NO_MEMORY);
+    dvi_matrix_destroy(&hessian);
+    dvi_regge_destroy(&regge);
+  }
+  ck_assert_int_gt(failures, 15);
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
+
 SUITE(action)
 {
   tcase_add_test(tests, regular_polytopes_have_their_deficits_and_actions);
@@ -298,4 +327,5 @@ SUITE(action)
   tcase_add_test(tests, hinges_have_volumes_and_deficits);
   tcase_add_test(tests, lengths_that_violate_inequalities_are_refused_with_their_simplex);
   tcase_add_test(tests, meshes_of_other_cells_are_refused);
+  tcase_add_test(tests, no_memory_is_reported);
 }

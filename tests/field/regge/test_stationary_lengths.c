@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/memory.h"
 #include "support/suite.h"
 
 typedef struct fixture {
@@ -224,6 +225,21 @@ START_TEST(a_closed_complex_without_lambda_has_no_stationary_lengths)
 }
 END_TEST
 
+START_TEST(no_memory_is_reported)
+{
+  fixture f = divided_tetrahedron(0);
+  int failures = 0;
+  for (dvi_status status = DVI_NO_MEMORY; status != DVI_OK; failures++) {
+    dvi__fail_allocations_after(failures);
+    status = dvi_regge_solve(f.regge, NULL, f.length, NULL);
+    dvi__fail_allocations_after(-1);
+    if (status != DVI_OK) ck_assert_int_eq(status, DVI_NO_MEMORY);
+  }
+  ck_assert_int_gt(failures, 10);
+  clear(&f);
+}
+END_TEST
+
 SUITE(stationary_lengths)
 {
   tcase_add_test(tests, a_convex_boundary_is_filled_by_flat_space);
@@ -234,4 +250,5 @@ SUITE(stationary_lengths)
   tcase_add_test(tests, failures_leave_the_lengths_and_name_the_reason);
   tcase_add_test(tests, a_problem_without_a_solution_is_reported);
   tcase_add_test(tests, a_closed_complex_without_lambda_has_no_stationary_lengths);
+  tcase_add_test(tests, no_memory_is_reported);
 }
