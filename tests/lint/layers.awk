@@ -65,6 +65,7 @@ BEGIN {
   sees["field/moving"] = "core num field/mesh field/space"
   sees["field/rotations"] = "core field/algebra"
   sees["field/regge"] = "core num field/algebra field/mesh"
+  sees["field/connection"] = "core num field/algebra field/mesh field/forms field/regge"
   # The library of scenes includes libdvi's public headers, too.
   sees["text"] = ""
   sees["expr"] = "text"
