@@ -22,13 +22,13 @@ typedef struct dvi_connection dvi_connection;
 
 /** Both sides of Gauss and Bonnet's theorem on a surface. */
 typedef struct dvi_gauss_bonnet {
-  double deficits;       /**< sum of the deficits of the inner vertices */
-  double turning;        /**< sum of pi less the angles at the vertices of the boundary */
-  int64_t euler;         /**< Euler's characteristic chi, vertices - edges + triangles */
+  double deficits;    /**< sum of the deficits of the inner vertices */
+  double turning;     /**< sum of pi less the angles at the vertices of the boundary */
+  int64_t euler;      /**< Euler's characteristic chi, vertices - edges + triangles */
   double difference;  /**< deficits + turning - 2 pi chi, a rounding error */
-  double least, most;    /**< smallest and largest deficit of an inner vertex, 0 without any */
-  int64_t at_least;      /**< vertex of the smallest deficit, or -1 */
-  int64_t at_most;       /**< vertex of the largest deficit, or -1 */
+  double least, most; /**< smallest and largest deficit of an inner vertex, 0 without any */
+  int64_t at_least;   /**< vertex of the smallest deficit, or -1 */
+  int64_t at_most;    /**< vertex of the largest deficit, or -1 */
 } dvi_gauss_bonnet;
 
 /** Options of a connection. Zero means the default. */

@@ -21,9 +21,9 @@ static const struct {
   const char *name;
   int cells[3];
 } spaces[] = {
-    {"icosphere", {2}}, {"torus", {12, 6}}, {"genus-2", {1}}, {"disk", {3}},    {"ball", {2}},
-    {"cell-600", {0}},  {"simplex-4", {0}}, {"cell-16", {0}}, {"simplex-5", {0}}, {"cross-5", {0}},
-    {"kuhn-torus", {3, 3, 3}},
+    {"icosphere", {2}}, {"torus", {12, 6}}, {"genus-2", {1}},          {"disk", {3}},
+    {"ball", {2}},      {"cell-600", {0}},  {"simplex-4", {0}},        {"cell-16", {0}},
+    {"simplex-5", {0}}, {"cross-5", {0}},   {"kuhn-torus", {3, 3, 3}},
 };
 
 static dvi_mesh *space(int i)
@@ -93,8 +93,8 @@ START_TEST(lengths_alone_make_a_connection)
 {
   static const char *const name[] = {"icosphere", "simplex-4", "cell-600", "simplex-5"};
   unsigned long long state = 5;
-  dvi_mesh *mesh = generated(name[_i], (dvi_generator_options){
-                                           .size = sizeof(dvi_generator_options)});
+  dvi_mesh *mesh = generated(name[_i],
+                             (dvi_generator_options){.size = sizeof(dvi_generator_options)});
   double *length = calloc((size_t)dvi_mesh_count(mesh, 1), sizeof *length);
   for (int64_t e = 0; e < dvi_mesh_count(mesh, 1); e++)
     length[e] = 1 + 0.05 * random_number(&state);
@@ -216,8 +216,8 @@ START_TEST(gauge_conjugates_holonomies)
 {
   static const char *const name[] = {"icosphere", "simplex-4", "simplex-5"};
   const int n = 2 + _i;
-  dvi_mesh *mesh = generated(name[_i], (dvi_generator_options){
-                                           .size = sizeof(dvi_generator_options)});
+  dvi_mesh *mesh = generated(name[_i],
+                             (dvi_generator_options){.size = sizeof(dvi_generator_options)});
   dvi_connection *c = connect(mesh, NULL, 1), *changed = NULL, *twice = NULL;
   double *g = random_rotations(n, dvi_mesh_count(mesh, n), 11);
   ck_assert_int_eq(dvi_connection_gauge(c, g, &changed), DVI_OK);
@@ -266,8 +266,8 @@ END_TEST
 /* In the plane a constant vector stays constant, whichever way it goes. */
 START_TEST(flat_transport_keeps_vectors_of_space)
 {
-  dvi_mesh *mesh = generated("disk", (dvi_generator_options){.size = sizeof(dvi_generator_options),
-                                                            .cells = {4}});
+  dvi_mesh *mesh = generated(
+      "disk", (dvi_generator_options){.size = sizeof(dvi_generator_options), .cells = {4}});
   dvi_connection *c = connect(mesh, NULL, 0);
   int64_t count;
   const int *ring = dvi_connection_ring(c, 0, &count);
@@ -312,8 +312,8 @@ END_TEST
 
 START_TEST(own_rotations_are_those_that_paths_multiply)
 {
-  dvi_mesh *mesh = generated("simplex-5", (dvi_generator_options){
-                                              .size = sizeof(dvi_generator_options)});
+  dvi_mesh *mesh = generated("simplex-5",
+                             (dvi_generator_options){.size = sizeof(dvi_generator_options)});
   double *own = random_rotations(4, dvi_mesh_count(mesh, 3), 3), R[16];
   const dvi_connection_options options = {.size = sizeof options, .rotation = own};
   dvi_connection *c = NULL;

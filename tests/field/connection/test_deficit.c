@@ -106,8 +106,8 @@ static const struct {
 /* The numbers have 15 decimals. The points of the 600-cell are rounded. */
 START_TEST(regular_polytopes_have_their_deficits)
 {
-  dvi_mesh *mesh = generated(polytopes[_i].name, (dvi_generator_options){
-                                                     .size = sizeof(dvi_generator_options)});
+  dvi_mesh *mesh = generated(polytopes[_i].name,
+                             (dvi_generator_options){.size = sizeof(dvi_generator_options)});
   const int64_t hinges = dvi_mesh_count(mesh, dvi_mesh_dimension(mesh) - 2);
   double *deficit = calloc((size_t)hinges, sizeof *deficit), *length = lengths_of(mesh, 0, 1);
   for (int64_t e = 0; e < dvi_mesh_count(mesh, 1); e++) length[e] = 1;
@@ -145,9 +145,12 @@ START_TEST(angles_of_flat_tetrahedra_have_all_digits)
   for (double height = 1; height > 1e-12; height *= 0.01) {
     const double point[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0.25, 0.25, height};
     const int vertex[] = {0, 1, 2, 3};
-    const dvi_mesh_terms terms = {
-        .size = sizeof terms, .dimension = 3, .points = 4, .point = point, .cells = 1,
-        .vertex = vertex};
+    const dvi_mesh_terms terms = {.size = sizeof terms,
+                                  .dimension = 3,
+                                  .points = 4,
+                                  .point = point,
+                                  .cells = 1,
+                                  .vertex = vertex};
     dvi__laid_cell laid;
     dvi_mesh *mesh = NULL;
     ck_assert_int_eq(dvi_mesh_create(&terms, &mesh), DVI_OK);
@@ -165,8 +168,8 @@ END_TEST
 
 START_TEST(lengths_of_no_simplex_are_refused)
 {
-  dvi_mesh *mesh = generated("simplex-4", (dvi_generator_options){
-                                              .size = sizeof(dvi_generator_options)});
+  dvi_mesh *mesh = generated("simplex-4",
+                             (dvi_generator_options){.size = sizeof(dvi_generator_options)});
   double length[10], deficit[10];
   for (int e = 0; e < 10; e++) length[e] = 1;
   length[0] = 3;
@@ -186,10 +189,10 @@ START_TEST(meshes_without_angles_are_refused)
 {
   dvi_gauss_bonnet report;
   double deficit[64];
-  dvi_mesh *boxes = generated("box", (dvi_generator_options){.size = sizeof(dvi_generator_options),
-                                                            .cells = {2, 2}});
-  dvi_mesh *ball = generated("ball", (dvi_generator_options){.size = sizeof(dvi_generator_options),
-                                                            .cells = {1}});
+  dvi_mesh *boxes = generated(
+      "box", (dvi_generator_options){.size = sizeof(dvi_generator_options), .cells = {2, 2}});
+  dvi_mesh *ball = generated(
+      "ball", (dvi_generator_options){.size = sizeof(dvi_generator_options), .cells = {1}});
   const double metric[] = {1, -1};
   dvi_mesh *spacetime = random_simplex(2, 2, metric, 3);
   ck_assert_int_eq(dvi_hinge_deficits(boxes, NULL, deficit), DVI_UNSUPPORTED);

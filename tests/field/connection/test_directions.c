@@ -98,9 +98,9 @@ START_TEST(trivial_connections_make_one_field)
   dvi_connection *adjusted = adjust(c, &options);
   double *direction = calloc(2 * (size_t)dvi_mesh_count(mesh, 2), sizeof *direction), mismatch;
   check_vertices(adjusted, _i);
-  ck_assert_int_eq(dvi_connection_directions(adjusted, 3, 0.7, fields[_i].symmetry, direction,
-                                             &mismatch),
-                   DVI_OK);
+  ck_assert_int_eq(
+      dvi_connection_directions(adjusted, 3, 0.7, fields[_i].symmetry, direction, &mismatch),
+      DVI_OK);
   ck_assert_double_le(mismatch, 20 * roundoff);
   ck_assert_double_eq_tol(direction[6], cos(0.7), 1e-15);
   free(direction);
@@ -116,7 +116,7 @@ START_TEST(loops_are_closed_and_independent_of_vertices)
   static const struct {
     const char *name;
     int cells[2], loops;
-  } of[] = {{"icosphere", {1}, 0}, {"torus", {12, 6}, 2},  {"genus-2", {2}, 4},
+  } of[] = {{"icosphere", {1}, 0}, {"torus", {12, 6}, 2},   {"genus-2", {2}, 4},
             {"disk", {3}, 0},      {"annulus", {3, 12}, 0}, {"ball", {1}, 0}};
   for (int i = 0; i < COUNT(of); i++) {
     dvi_mesh *mesh = surface(of[i].name, of[i].cells[0], of[i].cells[1]);

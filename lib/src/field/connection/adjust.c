@@ -69,8 +69,7 @@ static dvi_status check_index(const adjustment *a, int i)
   if (given->vertex < 0 || given->vertex >= a->c->mesh->count[0])
     return dvi__fail(DVI_BAD_ARGUMENT,
                      "curvature: index %g at vertex %lld, and the vertices are 0 to %lld",
-                     given->index, (long long)given->vertex,
-                     (long long)a->c->mesh->count[0] - 1);
+                     given->index, (long long)given->vertex, (long long)a->c->mesh->count[0] - 1);
   const double multiple = given->index * a->symmetry;
   if (!(fabs(multiple - nearbyint(multiple)) <= index_slack))
     return dvi__fail(DVI_BAD_ARGUMENT,
@@ -90,10 +89,11 @@ static dvi_status check_indices(const adjustment *a)
     sum += a->options->singularity[i].index;
   }
   if (fabs(sum - (double)euler) <= index_slack * (1 + a->options->singularities)) return DVI_OK;
-  return dvi__fail(DVI_BAD_ARGUMENT,
-                   "curvature: the indices sum to %g, and on this surface they sum to %lld, Euler's "
-                   "characteristic; a vertex of a boundary stands for the whole boundary",
-                   sum, (long long)euler);
+  return dvi__fail(
+      DVI_BAD_ARGUMENT,
+      "curvature: the indices sum to %g, and on this surface they sum to %lld, Euler's "
+      "characteristic; a vertex of a boundary stands for the whole boundary",
+      sum, (long long)euler);
 }
 
 /* Set 2 pi index - deficit of the nodes. */
@@ -106,8 +106,8 @@ static dvi_status set_right_side(adjustment *a)
   for (int64_t v = 0; v < vertices && status == DVI_OK; v++) a->right[a->s.node[v]] -= deficit[v];
   for (int i = 0; i < a->options->singularities && status == DVI_OK; i++) {
     const dvi_singularity *given = a->options->singularity + i;
-    a->right[a->s.node[given->vertex]] +=
-        two_pi * nearbyint(given->index * a->symmetry) / a->symmetry;
+    a->right[a->s.node[given->vertex]] += two_pi * nearbyint(given->index * a->symmetry) /
+                                          a->symmetry;
   }
   dvi__release(deficit);
   return status;
@@ -265,7 +265,7 @@ static dvi_status adjust_loops(adjustment *a)
   const int64_t loops = a->c->loops;
   if (loops == 0 || a->options->is_least) return DVI_OK;
   a->harmonic = DVI_NEW(double, loops * a->edges);
-  double *matrix = DVI_NEW(double, loops * (loops + 1));
+  double *matrix = DVI_NEW(double, loops *(loops + 1));
   int *pivot = DVI_NEW(int, loops);
   dvi_status status = a->harmonic != NULL && matrix != NULL && pivot != NULL ? find_harmonic(a)
                                                                              : no_memory();
@@ -309,8 +309,7 @@ static void turn_rotations(const adjustment *a, dvi_connection *c)
 static dvi_status check_arguments(const dvi_connection *connection,
                                   const dvi_adjust_options *options)
 {
-  if (connection == NULL)
-    return dvi__fail(DVI_BAD_ARGUMENT, "curvature: a connection is needed");
+  if (connection == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "curvature: a connection is needed");
   if (options->size != sizeof *options)
     return dvi__fail(DVI_BAD_ARGUMENT, "curvature: options of size %zu, %zu expected",
                      options->size, sizeof *options);

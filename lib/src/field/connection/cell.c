@@ -13,7 +13,7 @@
 #include "core/status.h"
 #include "field/connection/lengths.h"
 #include "field/regge/simplex.h"
-#include "num/angle.h"
+#include "field/mesh/angle.h"
 #include "num/simd/fused.h"
 
 typedef dvi__twofold vector[DVI_MESH_DIMENSION_MAX];
@@ -58,8 +58,7 @@ static double scale_of(double longest)
   return ldexp(1, -exponent);
 }
 
-static void set_edges(const dvi_mesh *mesh, int64_t cell,
-                      dvi__twofold edge[][DVI_MESH_SPACE_MAX])
+static void set_edges(const dvi_mesh *mesh, int64_t cell, dvi__twofold edge[][DVI_MESH_SPACE_MAX])
 {
   dvi__placed placed;
   double longest = 0;
@@ -69,8 +68,8 @@ static void set_edges(const dvi_mesh *mesh, int64_t cell,
   const double factor = scale_of(longest);
   for (int i = 0; i < mesh->n; i++)
     for (int l = 0; l < mesh->space; l++)
-      edge[i][l] = dvi__twofold_scaled(
-          (dvi__twofold){placed.x[i + 1][l], placed.tail[i + 1][l]}, factor);
+      edge[i][l] = dvi__twofold_scaled((dvi__twofold){placed.x[i + 1][l], placed.tail[i + 1][l]},
+                                       factor);
 }
 
 /* Set L and the frame by Gram and Schmidt's method, once, because twice the digits are enough. */

@@ -6,9 +6,9 @@
 /* Lengths are divided by a power of two, so that the longest edge from corner 0 is below 1. */
 typedef struct dvi__laid_cell {
   int n, space;
-  double frame[DVI_MESH_DIMENSION_MAX][DVI_MESH_SPACE_MAX];              /* 0 with lengths */
-  dvi__twofold place[DVI__SIMPLEX_CORNERS][DVI_MESH_DIMENSION_MAX];      /* of corner 0 it is 0 */
-  dvi__twofold slope[DVI__SIMPLEX_CORNERS][DVI_MESH_DIMENSION_MAX];      /* grad lambda_i */
+  double frame[DVI_MESH_DIMENSION_MAX][DVI_MESH_SPACE_MAX];         /* 0 with lengths */
+  dvi__twofold place[DVI__SIMPLEX_CORNERS][DVI_MESH_DIMENSION_MAX]; /* of corner 0 it is 0 */
+  dvi__twofold slope[DVI__SIMPLEX_CORNERS][DVI_MESH_DIMENSION_MAX]; /* grad lambda_i */
 } dvi__laid_cell;
 
 /* Lay out a cell whose edges have given lengths [edges], or NULL for those between its points. The

@@ -9,12 +9,12 @@
 struct dvi_connection {
   dvi_mesh *mesh;
   int n;
-  int is_own;        /* the rotations were given, or adjusted */
-  double *length;    /* [edges] or NULL for those of the points */
-  double *frame;     /* [cells*n*space] or NULL with lengths */
-  double *gauge;     /* [cells*n*n] from Gram and Schmidt's frames to the present ones, or NULL */
-  double *rotation;  /* [facets*n*n] from the first to the second cell of each inner facet */
-  double *lifted;    /* [facets*dvi__spin_size] or NULL */
+  int is_own;       /* the rotations were given, or adjusted */
+  double *length;   /* [edges] or NULL for those of the points */
+  double *frame;    /* [cells*n*space] or NULL with lengths */
+  double *gauge;    /* [cells*n*n] from Gram and Schmidt's frames to the present ones, or NULL */
+  double *rotation; /* [facets*n*n] from the first to the second cell of each inner facet */
+  double *lifted;   /* [facets*dvi__spin_size] or NULL */
   dvi__rings rings;
   int64_t loops;
   int64_t *loop_start; /* [loops+1] */

@@ -9,7 +9,7 @@
 #include "field/connection/lengths.h"
 #include "field/forms/duals.h"
 #include "field/regge/simplex.h"
-#include "num/angle.h"
+#include "field/mesh/angle.h"
 
 /* Give the angles of a cell, in the order of dvi__pair. */
 static dvi_status find_angles(const dvi_mesh *mesh, const double *length, int64_t cell,
@@ -22,7 +22,8 @@ static dvi_status find_angles(const dvi_mesh *mesh, const double *length, int64_
     dvi__cell_lengths(mesh, length, cell, of_cell);
     if (!dvi__simplex_measure(mesh->n, of_cell, &measured))
       return dvi__refuse_lengths(mesh, length, cell);
-    for (int p = 0; p < dvi__pairs(mesh->n); p++) angle[p] = (dvi__twofold){measured.hinge[p].angle, 0};
+    for (int p = 0; p < dvi__pairs(mesh->n); p++)
+      angle[p] = (dvi__twofold){measured.hinge[p].angle, 0};
     return DVI_OK;
   }
   DVI_TRY(dvi__lay_cell(mesh, NULL, cell, &laid));
@@ -32,8 +33,7 @@ static dvi_status find_angles(const dvi_mesh *mesh, const double *length, int64_
   return DVI_OK;
 }
 
-static dvi_status subtract_angles(const dvi_mesh *mesh, const double *length,
-                                  dvi__twofold *deficit)
+static dvi_status subtract_angles(const dvi_mesh *mesh, const double *length, dvi__twofold *deficit)
 {
   const int whole = (2 << mesh->n) - 1;
   for (int64_t c = 0; c < mesh->count[mesh->n]; c++) {
@@ -118,9 +118,8 @@ static void sum_deficits(const dvi_mesh *mesh, const vertices *of, dvi_gauss_bon
   const dvi__twofold turns = {-2 * (double)report->euler, 0};
   report->deficits = sum[0].head;
   report->turning = sum[1].head;
-  report->difference = dvi__twofold_add_product(dvi__twofold_plus(sum[0], sum[1]), turns,
-                                                dvi__twofold_pi)
-                           .head;
+  report->difference =
+      dvi__twofold_add_product(dvi__twofold_plus(sum[0], sum[1]), turns, dvi__twofold_pi).head;
 }
 
 static dvi_status make_report(const dvi_mesh *mesh, const double *length, const vertices *of,

@@ -24,13 +24,13 @@ static const uint64_t constant = (uint64_t)1 << PARAMETERS;
 typedef struct signs {
   const dvi_connection *c;
   int64_t facets, hinges;
-  uint64_t *bit;      /* [facets] */
-  char *is_known;     /* [facets] */
-  uint64_t *sum;      /* [hinges] of the known bits, and of the given one */
-  int *unknown;       /* [hinges] */
-  int64_t *queue;     /* [facets*n] hinges with at most one unknown bit, last in first out */
+  uint64_t *bit;  /* [facets] */
+  char *is_known; /* [facets] */
+  uint64_t *sum;  /* [hinges] of the known bits, and of the given one */
+  int *unknown;   /* [hinges] */
+  int64_t *queue; /* [facets*n] hinges with at most one unknown bit, last in first out */
   int64_t queued;
-  int *order;         /* [cells] from neighbour to neighbour */
+  int *order;                    /* [cells] from neighbour to neighbour */
   uint64_t used;                 /* parameters */
   uint64_t equation[PARAMETERS]; /* whose lowest bit is the parameter, or 0 */
 } signs;
@@ -247,7 +247,7 @@ dvi_status dvi__connection_lift(dvi_connection *c)
     return dvi__fail(DVI_UNSUPPORTED,
                      "curvature: the mesh is not orientable, and its rotations have no lift; take "
                      "them without spin");
-  c->lifted = DVI_NEW(double, s.facets * dvi__spin_size(c->n));
+  c->lifted = DVI_NEW(double, s.facets *dvi__spin_size(c->n));
   if (c->lifted == NULL) return dvi__fail(DVI_NO_MEMORY, "curvature: no memory for a lift");
   DVI_TRY(lift_rotations(c));
   return choose_signs(&s, c);

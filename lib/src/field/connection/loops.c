@@ -25,8 +25,7 @@ static int64_t trace(const dvi__surface *s, const int *depth, int64_t edge, int 
   int64_t before = 1, after = 1;
   for (int left = a, right = b; left != right;) {
     const int is_left = depth[left] >= depth[right];
-    const int cell = is_left ? left : right,
-              up = dvi__cell_behind(s->mesh, cell, s->parent[cell]);
+    const int cell = is_left ? left : right, up = dvi__cell_behind(s->mesh, cell, s->parent[cell]);
     *(is_left ? &left : &right) = up;
     *(is_left ? &before : &after) += 1;
   }

@@ -13,7 +13,8 @@ typedef struct dvi__rings {
   char *is_open; /* [hinges] not 0 for a fan */
 } dvi__rings;
 
-/* DVI_BAD_ARGUMENT if the cells around a hinge do not hang together. On failure nothing is owned. */
+/* DVI_BAD_ARGUMENT if the cells around a hinge do not hang together. On failure nothing is
+ * owned. */
 dvi_status dvi__rings_create(const dvi_mesh *mesh, dvi__rings *rings);
 void dvi__rings_clear(dvi__rings *rings);
 

@@ -97,8 +97,8 @@ static void lift_pair(const double *R, double *lift)
   int longest = 0;
   for (int a = 0; a < 4; a++)
     for (int b = 0; b < 4; b++) {
-      const double e[2][4] = {{a == 0, a == 1, a == 2, a == 3}, {b == 0, -(b == 1), -(b == 2),
-                                                                 -(b == 3)}};
+      const double e[2][4] = {{a == 0, a == 1, a == 2, a == 3},
+                              {b == 0, -(b == 1), -(b == 2), -(b == 3)}};
       table[a][b] = 0;
       for (int j = 0; j < 4; j++) {
         const double unit[4] = {j == 0, j == 1, j == 2, j == 3};

@@ -45,7 +45,6 @@ static dvi_status find_nodes(dvi__surface *s)
 
 /* ---- trees ---- */
 
-
 static void grow_triangles(dvi__surface *s, int64_t root)
 {
   int64_t length = 1;

@@ -1,6 +1,6 @@
 /* Angles in more digits than a double has. */
-#ifndef DVI_NUM_ANGLE_H
-#define DVI_NUM_ANGLE_H
+#ifndef DVI_FIELD_MESH_ANGLE_H
+#define DVI_FIELD_MESH_ANGLE_H
 #include "num/compensated.h"
 
 /* pi. */

@@ -5,7 +5,7 @@
  * cos a and sin a come from the series at z = a/64 and from six doublings of
  *
  *     s = sin z, v = 1 - cos z:     sin 2z = 2 s (1 - v),   1 - cos 2z = 2 s^2. */
-#include "num/angle.h"
+#include "field/mesh/angle.h"
 
 #include <math.h>
 
