@@ -36,6 +36,7 @@ static const subcommand subcommands[] = {
     {"spectrum", spectrum_command},
     {"plot", plot_command},
     {"regge", regge_command},
+    {"curvature", curvature_command},
     {NULL, NULL},
 };
 
@@ -68,6 +69,8 @@ static const char help[] =
     "  fit SCENE.yaml ...      fit parameters and the start of a run to measurements\n"
     "  mesh FILE|GENERATOR ... audit a mesh: counts, holes, quality, dual cells, stable steps; "
     "repair it\n"
+    "  curvature FILE|GENERATOR ...   curvature of a mesh by deficits and holonomy; fields of "
+    "directions\n"
     "  regge FILE|GENERATOR    action, deficits and stationary lengths of a complex (Regge "
     "calculus)\n"
     "  modes SCENE.yaml ...    the modes of a field on a mesh: eigenvalues, frequencies, shapes\n"

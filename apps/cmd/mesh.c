@@ -1,100 +1,23 @@
 /* dvi mesh, which audits and repairs meshes. */
-#define _POSIX_C_SOURCE 200809L
 #include <dvi/audit.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "cli/command.h"
-#include "cli/numbers.h"
 #include "cli/options.h"
 #include "cli/outputs.h"
-#include "cli/spelling.h"
 #include "csv/table.h"
+#include "load/open_mesh.h"
 
 enum { NAME_SIZE = 48 };
 
 /* The options. */
 typedef struct mesh_request {
-  const char *cells, *size, *origin, *grading, *periodic, *repair, *write, *csv;
+  mesh_sizes sizes;
+  const char *repair, *write, *csv;
 } mesh_request;
-
-/* ---- opening ---- */
-
-static bool is_generator(const char *name)
-{
-  for (int i = 0; dvi_mesh_generator_name(i) != NULL; i++)
-    if (strcmp(dvi_mesh_generator_name(i), name) == 0) return true;
-  return false;
-}
-
-/* Read up to four numbers above `least` with commas between them. Returns DONE, or complains. */
-static int read_list(const char *key, const char *text, double least, double list[4])
-{
-  char copy[256];
-  if (text == NULL) return DONE;
-  (void)snprintf(copy, sizeof copy, "%s", text);
-  int count = 0;
-  for (char *item = copy, *next; item != NULL; item = next) {
-    next = strchr(item, ',');
-    if (next != NULL) *next++ = '\0';
-    if (count == 4 || strlen(text) >= sizeof copy || !parse_number(item, &list[count++]))
-      return usage_error("mesh: --%s %s: one to four numbers are wanted, with commas between them",
-                         key, text);
-    if (!(list[count - 1] > least))
-      return usage_error("mesh: --%s %s: %g is not above %g", key, text, list[count - 1], least);
-  }
-  return DONE;
-}
-
-/* Read whole numbers from `least` on. */
-static int read_whole_list(const char *key, const char *text, int least, int whole[4])
-{
-  double list[4] = {0, 0, 0, 0};
-  const int code = read_list(key, text, least - 1, list);
-  for (int i = 0; i < 4 && code == DONE; i++) {
-    if (list[i] != floor(list[i]) || fabs(list[i]) > 1e9)
-      return usage_error("mesh: --%s %s: %g is no whole number", key, text, list[i]);
-    whole[i] = (int)list[i];
-  }
-  return code;
-}
-
-static int generate(const mesh_request *r, const char *name, dvi_mesh **mesh)
-{
-  dvi_generator_options options = {.size = sizeof options};
-  int code = read_whole_list("cells", r->cells, 1, options.cells);
-  if (code == DONE) code = read_whole_list("periodic", r->periodic, 0, options.periodic);
-  if (code == DONE) code = read_list("size", r->size, 0, options.extent);
-  if (code == DONE) code = read_list("origin", r->origin, -INFINITY, options.origin);
-  if (code == DONE) code = read_list("grading", r->grading, 0, options.grading);
-  if (code != DONE) return code;
-  const dvi_status status = dvi_mesh_generate(name, &options, mesh);
-  return status == DVI_OK ? DONE : library_error(status);
-}
-
-static const char *generator_at(int k, const void *list)
-{
-  (void)list;
-  return dvi_mesh_generator_name(k);
-}
-
-static int open_mesh(const mesh_request *r, const char *name, dvi_mesh **mesh)
-{
-  if (is_generator(name)) return generate(r, name, mesh);
-  if (r->cells || r->size || r->origin || r->grading || r->periodic)
-    return usage_error("mesh: '%s' is no generator, and a file takes no --cells, --size and so on",
-                       name);
-  if (strchr(name, '.') == NULL && access(name, F_OK) != 0) {
-    char hint[2 * NAME_SIZE];
-    return usage_error("mesh: '%s' is neither a file nor a generator%s", name,
-                       suggestion(name, generator_at, NULL, hint, sizeof hint));
-  }
-  const dvi_status status = dvi_mesh_read(name, NULL, mesh);
-  return status == DVI_OK ? DONE : library_error(status);
-}
 
 /* ---- the table ---- */
 
@@ -335,23 +258,7 @@ static const char *const details[] = {
 };
 
 static const option command_options[] = {
-    {.name = "cells",
-     OPTION_AT(mesh_request, cells),
-     .value = "N,...",
-     .help = "of a generator: cells along each axis, or its own numbers"},
-    {.name = "size",
-     OPTION_AT(mesh_request, size),
-     .value = "L,...",
-     .help = "of a generator: lengths, or radii"},
-    {.name = "origin", OPTION_AT(mesh_request, origin), .value = "X,...", .help = "of a generator"},
-    {.name = "grading",
-     OPTION_AT(mesh_request, grading),
-     .value = "G,...",
-     .help = "of a grid: node i of m is at (i/m)^G of its axis"},
-    {.name = "periodic",
-     OPTION_AT(mesh_request, periodic),
-     .value = "0|1,...",
-     .help = "of a grid: axes along which it repeats itself"},
+    MESH_SIZE_OPTIONS(mesh_request, sizes),
     {.name = "repair",
      OPTION_AT(mesh_request, repair),
      .value = "flip|glue",
@@ -379,7 +286,7 @@ static const command_line command = {
 static int run(const mesh_request *r, const char *name)
 {
   dvi_mesh *mesh = NULL;
-  int code = open_mesh(r, name, &mesh);
+  int code = open_mesh("mesh", &r->sizes, name, &mesh);
   if (code == DONE) code = audit(r, name, mesh, r->repair == NULL);
   if (code == DONE && r->repair != NULL) code = repair(r, &mesh);
   if (code == DONE && r->repair != NULL) code = audit(r, name, mesh, true);
@@ -393,7 +300,7 @@ static int run(const mesh_request *r, const char *name)
 
 int mesh_command(int argc, char **argv)
 {
-  mesh_request r = {.cells = NULL};
+  mesh_request r = {.repair = NULL};
   const char *name;
   int code;
   if (!options_parse(&command, argc, argv, &r, &name, &code)) return code;
