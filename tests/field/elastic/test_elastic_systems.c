@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/memory.h"
 #include "field/elastic/elastic.h"
 #include "field/mesh/mesh.h"
 #include "support/field/generated.h"
@@ -316,6 +317,53 @@ START_TEST(frames_of_friction_are_orthonormal)
 }
 END_TEST
 
+/* ---- memory ---- */
+
+static dvi_status try_all(const dvi_elastic_terms *terms)
+{
+  dvi_elastic *solid = NULL;
+  dvi_system *system = NULL;
+  double lambda[2];
+  const dvi_modes_options options = {.size = sizeof options, .count = 2};
+  dvi_status status = dvi_elastic_create(terms, &solid);
+  if (status == DVI_OK) status = dvi_elastic_system(solid, &system);
+  if (status == DVI_OK) status = dvi_elastic_modes(solid, &options, lambda, NULL, NULL);
+  dvi_system_destroy(&system);
+  dvi_elastic_destroy(&solid);
+  return status;
+}
+
+START_TEST(failing_allocations_are_told)
+{
+  const dvi_elastic_load load = {.part = "all", .force = constant_weight, .is_steady = 1};
+  const dvi_elastic_condition held = {.part = "left", .component = {1}};
+  const dvi_obstacle floor = {.name = "floor", .normal = {0, 1}, .point = {0, -1}};
+  dvi_elastic_material material = unit_material(DVI_ELASTIC_SVK);
+  material.beta = 0.1;
+  dvi_mesh *mesh = grid_mesh("kuhn", 2, 2, 1);
+  const dvi_elastic_terms terms = {.size = sizeof terms,
+                                   .mesh = mesh,
+                                   .material = &material,
+                                   .materials = 1,
+                                   .condition = &held,
+                                   .conditions = 1,
+                                   .load = &load,
+                                   .loads = 1,
+                                   .obstacle = &floor,
+                                   .obstacles = 1};
+  dvi_status status = DVI_NO_MEMORY;
+  int successes = 0;
+  for (; successes < 1000 && status != DVI_OK; successes++) {
+    dvi__fail_allocations_after(successes);
+    status = try_all(&terms);
+    dvi__fail_allocations_after(-1);
+    ck_assert(status == DVI_OK || status == DVI_NO_MEMORY);
+  }
+  ck_assert(status == DVI_OK && successes > 40);
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
+
 SUITE(elastic_systems)
 {
   tcase_add_loop_test(tests, callbacks_have_the_derivatives_and_patterns_that_they_declare, 0,
@@ -325,4 +373,5 @@ SUITE(elastic_systems)
   tcase_add_test(tests, symmetries_are_those_that_conditions_loads_and_obstacles_allow);
   tcase_add_test(tests, contacts_are_the_distances_of_nodes);
   tcase_add_test(tests, frames_of_friction_are_orthonormal);
+  tcase_add_test(tests, failing_allocations_are_told);
 }
