@@ -537,6 +537,24 @@ START_TEST(other_meshes_are_refused)
 }
 END_TEST
 
+START_TEST(a_plane_has_no_third_component)
+{
+  const dvi_elastic_condition third = {.part = "left", .component = {0, 0, 1}};
+  const dvi_elastic_material material = unit_material(DVI_ELASTIC_SVK);
+  dvi_mesh *mesh = grid_mesh("kuhn", 2, 1, 1);
+  const dvi_elastic_terms terms = {.size = sizeof terms,
+                                   .mesh = mesh,
+                                   .material = &material,
+                                   .materials = 1,
+                                   .condition = &third,
+                                   .conditions = 1};
+  dvi_elastic *solid = NULL;
+  ck_assert_int_eq(dvi_elastic_create(&terms, &solid), DVI_BAD_ARGUMENT);
+  check_words("the condition on part \"left\" is on component 2");
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
+
 SUITE(elastic_solids)
 {
   tcase_add_loop_test(tests, affine_displacements_have_one_stress_and_are_in_equilibrium, 0,
@@ -552,4 +570,5 @@ SUITE(elastic_solids)
   tcase_add_loop_test(tests, inverted_cells_are_named, DVI_ELASTIC_SVK, DVI_ELASTIC_ENERGY);
   tcase_add_test(tests, bad_terms_have_their_sentences);
   tcase_add_test(tests, other_meshes_are_refused);
+  tcase_add_test(tests, a_plane_has_no_third_component);
 }

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/memory.h"
 #include "field/elastic/elastic.h"
 #include "field/mesh/mesh.h"
 #include "support/field/generated.h"
@@ -138,6 +139,33 @@ START_TEST(potentials_are_the_energies_of_the_solid)
   }
   ck_assert_double_eq_tol(stored, energies.stored, 1e-15);
   ck_assert_double_eq_tol(load, energies.load, 1e-15);
+  dvi_elastic_destroy(&solid);
+}
+END_TEST
+
+/* Rayleigh's force is -alpha m u' - beta K u' of all nodes, also of those that conditions move. */
+START_TEST(damping_pulls_by_the_rates_of_all_nodes)
+{
+  const struct kind *kind = kinds + _i;
+  dvi_elastic *solid = solid_of_kind(kind);
+  dvi_system_terms terms;
+  double q[18], v[18], F[18], u[18], rate[18], expected[18] = {0};
+  ck_assert_int_eq(dvi_elastic_system_terms(solid, &terms), DVI_OK);
+  ck_assert_int_eq(terms.force_count, kind->is_damped);
+  fill(18, q, v);
+  ck_assert_int_eq(dvi_elastic_lift(solid, 0.4, q, v, u, rate), DVI_OK);
+  for (int k = 0; k < 18; k++) expected[k] = -0.3 * solid->mass[k / 2] * rate[k];
+  for (int64_t c = 0; c < solid->cells; c++) {
+    double own[DVI__SOLID_NUMBERS], K[DVI__SOLID_NUMBERS * DVI__SOLID_NUMBERS];
+    dvi__solid_gather(solid, c, rate, own);
+    ck_assert_int_eq(dvi__solid_stiffness(solid, c, NULL, K), 0);
+    for (int r = 0; r < 6; r++)
+      for (int s = 0; s < 6; s++)
+        expected[2 * solid->vertex[3 * c + r / 2] + r % 2] -= 0.02 * K[6 * r + s] * own[s];
+  }
+  if (kind->is_damped) ck_assert_int_eq(terms.forces->value(0.4, q, v, F, terms.forces->user), 0);
+  for (int k = 0; k < 18 && kind->is_damped; k++)
+    if (solid->unknown[k] >= 0) ck_assert_double_eq_tol(F[solid->unknown[k]], expected[k], 1e-15);
   dvi_elastic_destroy(&solid);
 }
 END_TEST
@@ -316,13 +344,62 @@ START_TEST(frames_of_friction_are_orthonormal)
 }
 END_TEST
 
+/* ---- memory ---- */
+
+static dvi_status try_all(const dvi_elastic_terms *terms)
+{
+  dvi_elastic *solid = NULL;
+  dvi_system *system = NULL;
+  double lambda[2];
+  const dvi_modes_options options = {.size = sizeof options, .count = 2};
+  dvi_status status = dvi_elastic_create(terms, &solid);
+  if (status == DVI_OK) status = dvi_elastic_system(solid, &system);
+  if (status == DVI_OK) status = dvi_elastic_modes(solid, &options, lambda, NULL, NULL);
+  dvi_system_destroy(&system);
+  dvi_elastic_destroy(&solid);
+  return status;
+}
+
+START_TEST(failing_allocations_are_told)
+{
+  const dvi_elastic_load load = {.part = "all", .force = constant_weight, .is_steady = 1};
+  const dvi_elastic_condition held = {.part = "left", .component = {1}};
+  const dvi_obstacle floor = {.name = "floor", .normal = {0, 1}, .point = {0, -1}};
+  dvi_elastic_material material = unit_material(DVI_ELASTIC_SVK);
+  material.beta = 0.1;
+  dvi_mesh *mesh = grid_mesh("kuhn", 2, 2, 1);
+  const dvi_elastic_terms terms = {.size = sizeof terms,
+                                   .mesh = mesh,
+                                   .material = &material,
+                                   .materials = 1,
+                                   .condition = &held,
+                                   .conditions = 1,
+                                   .load = &load,
+                                   .loads = 1,
+                                   .obstacle = &floor,
+                                   .obstacles = 1};
+  dvi_status status = DVI_NO_MEMORY;
+  int successes = 0;
+  for (; successes < 1000 && status != DVI_OK; successes++) {
+    dvi__fail_allocations_after(successes);
+    status = try_all(&terms);
+    dvi__fail_allocations_after(-1);
+    ck_assert(status == DVI_OK || status == DVI_NO_MEMORY);
+  }
+  ck_assert(status == DVI_OK && successes > 40);
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
+
 SUITE(elastic_systems)
 {
   tcase_add_loop_test(tests, callbacks_have_the_derivatives_and_patterns_that_they_declare, 0,
                       KINDS);
   tcase_add_loop_test(tests, potentials_are_the_energies_of_the_solid, 0, KINDS);
+  tcase_add_loop_test(tests, damping_pulls_by_the_rates_of_all_nodes, 0, KINDS);
   tcase_add_test(tests, a_step_names_the_cell_whose_law_is_not_defined);
   tcase_add_test(tests, symmetries_are_those_that_conditions_loads_and_obstacles_allow);
   tcase_add_test(tests, contacts_are_the_distances_of_nodes);
   tcase_add_test(tests, frames_of_friction_are_orthonormal);
+  tcase_add_test(tests, failing_allocations_are_told);
 }

@@ -66,6 +66,12 @@ static dvi_status check(const dvi_elastic *e, const dvi_elastic_condition *condi
   if (condition->part == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "elastic: a condition has no part of the mesh");
   (void)dvi_mesh_part_cells(e->mesh, condition->part, 0, &count);
+  if (e->n == 2 && condition->component[2] != 0)
+    return dvi__fail(
+        DVI_BAD_ARGUMENT,
+        "elastic: the condition on part \"%s\" is on component 2, but displacements in "
+        "a plane have 0 and 1",
+        condition->part);
   if (count >= 0) return DVI_OK;
   return dvi__fail(DVI_BAD_ARGUMENT,
                    "elastic: a condition is set on part \"%s\", which the mesh has not",
