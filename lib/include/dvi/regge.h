@@ -99,9 +99,10 @@ dvi_status dvi_regge_lengths(const dvi_regge *regge, double *length);
  *  @param      length    [edges] of the mesh's edges, in their order
  *  @param[out] action    S. May be NULL
  *  @param[out] gradient  [edges] dS/dl_e. May be NULL
- *  @retval DVI_BAD_ARGUMENT  an argument is missing, a length is not positive, or lengths violate
+ *  @retval DVI_BAD_ARGUMENT  an argument is missing, a length is not 1e-60 to 1e60, or lengths violate
  *                            the inequality of a triangle, a tetrahedron or a 4-simplex.
  *                            dvi_last_error() names that simplex, its vertices and its lengths
+ *  @retval DVI_NOT_FINITE    Lambda is so large that numbers overflow
  *  @retval DVI_NO_MEMORY     there is no memory */
 dvi_status dvi_regge_action(const dvi_regge *regge, const double *length, double *action,
                             double *gradient);
