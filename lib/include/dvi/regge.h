@@ -55,8 +55,9 @@ typedef struct dvi_regge_report {
    *  are the moves of inner vertices, n for each. No step goes along them, which is how the gauge
    *  is fixed */
   int64_t null_directions;
-  /** sum of delta^2/(lambda^2 + delta^2) over the Hessian's eigenvalues lambda, with delta 1e-7 of
-   *  its largest entry. Rounded it is null_directions. If it is not near a whole number, the gauge
+  /** log2 of |det(H + 2 i delta)/det(H + i delta)| with the Hessian H of the unknowns, and delta
+   *  1e-7 of its largest entry. Null directions add 1, and others of eigenvalues lambda about
+   *  2 (delta/lambda)^2. Rounded it is null_directions. If it is not near a whole number, the gauge
    *  freedom is broken a little, and some directions are determined poorly */
   double softness;
 } dvi_regge_report;
@@ -99,9 +100,10 @@ dvi_status dvi_regge_lengths(const dvi_regge *regge, double *length);
  *  @param      length    [edges] of the mesh's edges, in their order
  *  @param[out] action    S. May be NULL
  *  @param[out] gradient  [edges] dS/dl_e. May be NULL
- *  @retval DVI_BAD_ARGUMENT  an argument is missing, a length is not positive, or lengths violate
- *                            the inequality of a triangle, a tetrahedron or a 4-simplex.
+ *  @retval DVI_BAD_ARGUMENT  an argument is missing, a length is not 1e-60 to 1e60, or lengths
+ *                            violate the inequality of a triangle, a tetrahedron or a 4-simplex.
  *                            dvi_last_error() names that simplex, its vertices and its lengths
+ *  @retval DVI_NOT_FINITE    Lambda is so large that numbers overflow
  *  @retval DVI_NO_MEMORY     there is no memory */
 dvi_status dvi_regge_action(const dvi_regge *regge, const double *length, double *action,
                             double *gradient);

@@ -10,7 +10,10 @@
  * those whose eigenvalues are large beside delta. |g|^2 falls along it, so that it is halved until
  * |g| falls and all simplices exist. The null directions are counted by
  *
- *     sum delta^2/(lambda^2 + delta^2) = -delta Im tr (H + i delta)^{-1}. */
+ *     log2 |det(H + 2 i delta)/det(H + i delta)| = sum log2((lambda^2 + 4 delta^2)
+ *                                                           /(lambda^2 + delta^2))/2,
+ *
+ * to which those with lambda = 0 add 1, and those with large lambda 0. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -177,15 +180,16 @@ static double typical_length(const search *s)
   return norm(s, s->length) / sqrt((double)s->unknowns);
 }
 
-/* Factor H + i delta, with delta^2 = damping |H| |g|/l, where l is a typical length, or the least
- * delta. */
-static dvi_status factor(search *s, double gradient)
+/* Factor H + i delta, with delta^2 = damping |H| |g|/l, where l is a typical length, or a multiple
+ * of the least delta. */
+static dvi_status factor(search *s, double gradient, double multiple)
 {
   const int entries = s->pattern.start[s->unknowns];
   double most = 0;
   for (int i = 0; i < entries; i++) most = fmax(most, fabs(s->sums.hessian[s->place[i]]));
   if (most == 0) return dvi__fail(DVI_SINGULAR, "regge: the Hessian of the action vanishes");
-  s->delta = fmax(shift_part * most, sqrt(s->damping * most * gradient / typical_length(s)));
+  s->delta = fmax(multiple * shift_part * most,
+                  sqrt(s->damping * most * gradient / typical_length(s)));
   for (int64_t u = 0; u < s->unknowns; u++)
     for (int i = s->pattern.start[u]; i < s->pattern.start[u + 1]; i++) {
       s->value[2 * i] = s->sums.hessian[s->place[i]];
@@ -268,7 +272,7 @@ static dvi_status iterate(search *s, int most, int *iterations)
   DVI_TRY(evaluate(s, s->length, 1));
   for (*iterations = 0; s->size > roundoff * s->terms && falls && *iterations < most;
        ++*iterations) {
-    DVI_TRY(factor(s, s->size));
+    DVI_TRY(factor(s, s->size, 1));
     DVI_TRY(find_step(s));
     DVI_TRY(search_line(s, &falls, &refused));
     DVI_TRY(evaluate(s, s->length, 1));
@@ -279,17 +283,13 @@ static dvi_status iterate(search *s, int most, int *iterations)
 
 /* ---- the report ---- */
 
-/* Add up -delta Im of the diagonal of (H + i delta)^{-1}, a column at a time. */
+/* Compare the determinants at delta and at 2 delta. */
 static dvi_status count_null(search *s, double *sum)
 {
-  DVI_TRY(factor(s, 0));
-  *sum = 0;
-  for (int64_t u = 0; u < s->unknowns; u++) {
-    memset(s->rhs, 0, (size_t)(2 * s->unknowns) * sizeof *s->rhs);
-    s->rhs[2 * u] = 1;
-    DVI_TRY(dvi__linear_solve(s->linear, s->rhs));
-    *sum -= s->delta * s->rhs[2 * u + 1];
-  }
+  DVI_TRY(factor(s, 0, 1));
+  const double before = dvi__linear_log_determinant(s->linear);
+  DVI_TRY(factor(s, 0, 2));
+  *sum = (dvi__linear_log_determinant(s->linear) - before) / log(2);
   return DVI_OK;
 }
 

@@ -32,6 +32,9 @@ static const double pi = 3.14159265358979323846;
 
 enum { ITERATIONS = 60 };
 
+/* The length at rest is about 1/sqrt(Lambda), and its cube may not underflow. */
+static const double least_lambda = 1e-100, most_lambda = 1e100;
+
 /* The sections, and the struts. */
 typedef struct sections {
   double edges, triangles, tetrahedra, at_edge; /* N_1, N_2, N_3, n */
@@ -122,11 +125,11 @@ static dvi_status check(const dvi_regge *r, const dvi_regge_universe_options *op
   if (options->steps < 1)
     return dvi__fail(DVI_BAD_ARGUMENT, "regge: %d steps are asked, 1 or more are possible",
                      options->steps);
-  if (!(r->lambda > 0))
+  if (!(r->lambda >= least_lambda && r->lambda <= most_lambda))
     return dvi__fail(DVI_BAD_ARGUMENT,
                      "regge: Lambda is %g, and an empty universe with a moment of rest needs one "
-                     "above 0",
-                     r->lambda);
+                     "above 0, of %g to %g",
+                     r->lambda, least_lambda, most_lambda);
   if (r->n != 3 || r->boundary_hinges > 0)
     return dvi__fail(
         DVI_UNSUPPORTED,
