@@ -19,8 +19,8 @@ void dvi__solid_avi_destroy(dvi__solid_avi **avi)
   dvi__solid_avi *s = *avi;
   if (s == NULL) return;
   void *const memory[] = {s->name,    s->corner,     s->node_kind, s->cell_kind, s->step,
-                          s->decay,   s->viscous,    s->tangent,   s->block,     s->kept,
-                          s->cell_of, s->cell_start};
+                          s->decay,   s->viscous,    s->block,     s->kept,      s->cell_of,
+                          s->cell_start};
   for (size_t i = 0; i < sizeof memory / sizeof *memory; i++) dvi__release(memory[i]);
   destroy_view(s->view);
   dvi__calendar_destroy(&s->calendar);
@@ -36,7 +36,7 @@ static dvi_status no_memory(const dvi__solid_avi *s)
 static dvi_status allocate(dvi__solid_avi *s)
 {
   const dvi_elastic *e = s->solid;
-  const int64_t width = s->n + 1, numbers = s->vertices * s->n, entries = (int64_t)s->n * s->n;
+  const int64_t width = s->n + 1, numbers = s->vertices * s->n;
   int decays = 0;
   for (int i = 0; i < e->material_count; i++) decays |= e->materials[i].alpha > 0;
   s->name = DVI_NEW(int, s->cells);
@@ -45,12 +45,11 @@ static dvi_status allocate(dvi__solid_avi *s)
   s->cell_kind = DVI_NEW(uint8_t, s->cells);
   s->step = DVI_NEW(double, s->cells);
   s->viscous = DVI_NEW(int, s->cells);
-  s->tangent = DVI_NEW(double, e->material_count * entries * entries);
   s->cell_start = DVI_NEW(int64_t, s->vertices + 1);
   s->cell_of = DVI_NEW(int, s->cells * width);
   s->view = DVI_NEW(dvi__solid_view, 1);
   if (!s->name || !s->corner || !s->node_kind || !s->cell_kind || !s->step || !s->viscous ||
-      !s->tangent || !s->cell_start || !s->cell_of || !s->view)
+      !s->cell_start || !s->cell_of || !s->view)
     return no_memory(s);
   s->view->u = DVI_NEW(double, numbers);
   s->view->rate = DVI_NEW(double, numbers);
@@ -91,6 +90,7 @@ dvi_status dvi__solid_avi_create(const dvi_elastic *solid, const dvi__solid_requ
                         .vertices = solid->vertices,
                         .cells = solid->cells,
                         .is_free = request->is_free || request->is_queued,
+                        .is_equal = request->is_equal,
                         .is_linear = request->is_linear,
                         .may_fail = can_fail(solid),
                         .classes = plan.classes,

@@ -18,7 +18,7 @@
  * Kale and Lew 2007 for threads. */
 #ifndef DVI_FIELD_ELASTIC_AVI_ENGINE_H
 #define DVI_FIELD_ELASTIC_AVI_ENGINE_H
-#include "field/elastic/elastic.h"
+#include "field/elastic/cell.h"
 #include "field/elastic_avi/calendar.h"
 #include "march/sections.h"
 
@@ -86,9 +86,9 @@ typedef struct dvi__solid_avi {
   double *decay; /* [vertices] rates, or empty */
   int *viscous;  /* [cells] place in `stretch`, or -1. NULL if there are none */
   int64_t viscous_count;
-  double *tangent;           /* [materials*81] dP/dF at rest */
   int64_t *cell_start;       /* [vertices+1] */
   int *cell_of;              /* own numbers of the cells of a vertex, ascending */
+  int is_equal;              /* one step for all */
   int is_free;               /* events are taken from a calendar */
   int is_linear;             /* forces are those of small strains at rest */
   int may_fail;              /* forces, loads or conditions */

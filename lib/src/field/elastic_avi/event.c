@@ -22,19 +22,6 @@
 
 /* ---- flights ---- */
 
-static int give(const dvi__solid_avi *avi, int vertex, double t, dvi__solid_node *node)
-{
-  double u[DVI__SOLID_AXES], rate[DVI__SOLID_AXES];
-  const int returned = dvi__solid_given(avi->solid, vertex, t, u, rate);
-  if (returned != 0) return returned;
-  for (int i = 0; i < avi->n; i++) {
-    if (!(avi->node_kind[vertex] & 1 << i)) continue;
-    node->u[i] = u[i];
-    node->v[i] = rate[i];
-  }
-  return 0;
-}
-
 int dvi__solid_guide(const dvi__solid_avi *avi, int vertex, double t, dvi__solid_node *node,
                      int64_t *hits)
 {
@@ -50,12 +37,12 @@ int dvi__solid_guide(const dvi__solid_avi *avi, int vertex, double t, dvi__solid
     for (int i = 0; i < DVI__SOLID_AXES; i++) node->u[i] += node->v[i] * length;
   if (kind & DVI__NODE_DECAYS)
     for (int i = 0; i < DVI__SOLID_AXES; i++) node->v[i] *= exp(-z);
-  return kind & DVI__NODE_DRIVEN ? give(avi, vertex, t, node) : 0;
+  return kind & DVI__NODE_DRIVEN ? dvi__solid_given(avi->solid, vertex, t, node->u, node->v) : 0;
 }
 
 /* ---- forces ---- */
 
-/* Add -V (tangent : grad w) grad N to f. */
+/* Add -V (C : grad w) grad N to f. */
 static void add_small_strain(const dvi__solid_avi *avi, int64_t c, double factor, const double *w,
                              double *f)
 {
@@ -63,7 +50,7 @@ static void add_small_strain(const dvi__solid_avi *avi, int64_t c, double factor
   const int n = avi->n;
   const int64_t cell = avi->name[c];
   const double *gradient = e->gradient + cell * (n + 1) * n,
-               *tangent = avi->tangent + (int64_t)e->material[cell] * n * n * n * n;
+               *rest = e->materials[e->material[cell]].rest;
   double H[DVI__SOLID_ENTRIES] = {0};
   for (int a = 0; a <= n; a++)
     for (int i = 0; i < n; i++)
@@ -71,7 +58,7 @@ static void add_small_strain(const dvi__solid_avi *avi, int64_t c, double factor
   for (int i = 0; i < n; i++)
     for (int j = 0; j < n; j++) {
       double P = 0;
-      for (int k = 0; k < n * n; k++) P += tangent[(i * n + j) * n * n + k] * H[k];
+      for (int k = 0; k < n * n; k++) P += rest[(i * n + j) * n * n + k] * H[k];
       for (int a = 0; a <= n; a++)
         f[a * n + i] -= factor * e->volume[cell] * P * gradient[a * n + j];
     }

@@ -4,7 +4,6 @@
 #include "field/elastic_avi/layout.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "core/memory.h"
 #include "core/status.h"
@@ -35,7 +34,7 @@ static void number_cells(const dvi__solid_plan *plan, dvi__solid_avi *avi)
   }
 }
 
-static dvi_status list_cells(dvi__solid_avi *avi)
+static void list_cells(dvi__solid_avi *avi)
 {
   const int width = avi->n + 1;
   int64_t *const start = avi->cell_start;
@@ -45,7 +44,6 @@ static dvi_status list_cells(dvi__solid_avi *avi)
     avi->cell_of[start[avi->corner[i]]++] = (int)(i / width);
   for (int64_t v = avi->vertices; v > 0; v--) start[v] = start[v - 1];
   start[0] = 0;
-  return DVI_OK;
 }
 
 /* ---- kinds ---- */
@@ -58,9 +56,8 @@ static int conditions_of(const dvi_elastic *e, int64_t vertex)
     const int64_t at = vertex * e->n + i;
     if (e->unknown[at] >= 0) continue;
     kind |= 1 << i;
-    if (e->condition != NULL && e->condition[at] >= 0 &&
-        !e->conditions[e->condition[at]].is_steady)
-      kind |= DVI__NODE_DRIVEN;
+    const dvi_elastic_condition *condition = e->conditions + e->condition[at];
+    if (condition->displacement != NULL && !condition->is_steady) kind |= DVI__NODE_DRIVEN;
   }
   return kind;
 }
@@ -107,46 +104,6 @@ static void find_cell_kinds(dvi__solid_avi *avi)
   }
 }
 
-/* ---- materials ---- */
-
-/* dP_ij/dF_kl = lambda d_ij d_kl + mu (d_ik d_jl + d_il d_jk) at rest */
-static void fill_tangent(const dvi__solid_material *m, int n, double *tangent)
-{
-  for (int row = 0; row < n * n; row++)
-    for (int column = 0; column < n * n; column++) {
-      const int i = row / n, j = row % n, k = column / n, l = column % n;
-      tangent[row * n * n + column] = m->lambda * (i == j) * (k == l) +
-                                      m->mu * ((i == k) * (j == l) + (i == l) * (j == k));
-    }
-}
-
-static dvi_status ask_tangent(const dvi__solid_material *m, int n, double *tangent)
-{
-  double F[DVI__SOLID_ENTRIES] = {0}, lower[45];
-  for (int i = 0; i < n; i++) F[i * n + i] = 1;
-  if (m->energy(1, F, NULL, NULL, lower, m->user) != 0)
-    return dvi__fail(DVI_CALLBACK_FAILED, "elastic: a stored energy failed at rest");
-  for (int row = 0; row < n * n; row++)
-    for (int column = 0; column <= row; column++)
-      tangent[row * n * n + column] = tangent[column * n * n + row] =
-          lower[row * (row + 1) / 2 + column];
-  return DVI_OK;
-}
-
-static dvi_status find_tangents(dvi__solid_avi *avi)
-{
-  const int n = avi->n;
-  for (int i = 0; i < avi->solid->material_count; i++) {
-    const dvi__solid_material *m = avi->solid->materials + i;
-    double *tangent = avi->tangent + (int64_t)i * n * n * n * n;
-    if (m->law == DVI_ELASTIC_ENERGY)
-      DVI_TRY(ask_tangent(m, n, tangent));
-    else
-      fill_tangent(m, n, tangent);
-  }
-  return DVI_OK;
-}
-
 /* ---- the state ---- */
 
 typedef struct part {
@@ -183,10 +140,9 @@ static dvi_status lay_out_state(dvi__solid_avi *avi)
 dvi_status dvi__solid_lay_out(const dvi__solid_plan *plan, dvi__solid_avi *avi)
 {
   number_cells(plan, avi);
-  DVI_TRY(list_cells(avi));
+  list_cells(avi);
   if (avi->decay != NULL) find_decay(avi);
   find_node_kinds(avi);
   find_cell_kinds(avi);
-  DVI_TRY(find_tangents(avi));
   return lay_out_state(avi);
 }

@@ -41,7 +41,7 @@ dvi_status dvi__solid_avi_start(dvi__solid_avi *avi, double t, const double *u, 
 /* Let all events up to t happen, and those at t up to a few roundings. */
 dvi_status dvi__solid_avi_advance(dvi__solid_avi *avi, double t);
 
-/* Give u and u' at the march's time, at `count` components, or all for NULL. u' may be NULL. */
+/* Give u or u' at the march's time, at `count` components, or all for NULL. The other is NULL. */
 dvi_status dvi__solid_avi_sample(const dvi__solid_avi *avi, int64_t count, const int *component,
                                  double *u, double *rate);
 

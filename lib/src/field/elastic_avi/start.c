@@ -32,18 +32,9 @@ static dvi_status check(const dvi__solid_avi *avi, double t, const double *u, co
   if (rate != NULL) memcpy(view->rate, rate, size);
   else memset(view->rate, 0, size);
   for (int64_t v = 0; v < avi->vertices && !avi->is_linear; v++) {
-    const int kind = avi->node_kind[v];
-    double given[DVI__SOLID_AXES], speed[DVI__SOLID_AXES];
-    if (!(kind & DVI__NODE_GIVEN)) continue;
-    if (dvi__solid_given(avi->solid, v, t, given, speed) != 0)
-      return dvi__fail(DVI_CALLBACK_FAILED,
-                       "%s: a displacement that is given failed at vertex %lld and t = %g",
-                       avi->method, (long long)v, t);
-    for (int i = 0; i < avi->n; i++) {
-      if (!(kind & 1 << i)) continue;
-      view->u[v * avi->n + i] = given[i];
-      view->rate[v * avi->n + i] = kind & DVI__NODE_DRIVEN ? speed[i] : 0;
-    }
+    const int returned = dvi__solid_given(avi->solid, v, t, view->u + v * avi->n,
+                                          view->rate + v * avi->n);
+    if (returned != 0) return dvi__solid_refuse_given(avi->solid, v, returned);
   }
   DVI_TRY(dvi_elastic_energy(avi->solid, t, view->u, view->rate, NULL, &view->energies));
   if (isfinite(view->energies.kinetic + view->energies.stored + view->energies.load)) return DVI_OK;

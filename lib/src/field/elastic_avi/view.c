@@ -23,19 +23,12 @@ static double time_of_cell(const dvi__solid_avi *avi, int64_t c)
   return dvi__solid_slot_time(avi, avi->clock.slot >> j << j);
 }
 
-static dvi_status failed(const dvi__solid_avi *avi, int64_t vertex)
-{
-  return dvi__fail(DVI_CALLBACK_FAILED,
-                   "%s: a displacement that is given failed at vertex %lld and t = %g",
-                   avi->method, (long long)vertex, avi->clock.t);
-}
-
 /* Give a node at the march's time. */
 static dvi_status see_node(const dvi__solid_avi *avi, int vertex, dvi__solid_node *node)
 {
   *node = avi->state.node[vertex];
-  if (dvi__solid_fly(avi, vertex, avi->clock.t, node, NULL) != 0) return failed(avi, vertex);
-  return DVI_OK;
+  const int returned = dvi__solid_fly(avi, vertex, avi->clock.t, node, NULL);
+  return returned == 0 ? DVI_OK : dvi__solid_refuse_given(avi->solid, vertex, returned);
 }
 
 /* What a cell owes to its nodes, over their masses [(n+1)*n]. */
@@ -140,24 +133,23 @@ dvi_status dvi__solid_avi_sample(const dvi__solid_avi *avi, int64_t count, const
                                  double *u, double *rate)
 {
   const int n = avi->n;
+  if (component == NULL) count = avi->vertices * n;
+  if (component == NULL && rate != NULL) DVI_TRY(dvi__solid_avi_look(avi));
   const int is_seen = avi->view->t == avi->clock.t;
-  if (component == NULL) {
-    DVI_TRY(dvi__solid_avi_look(avi));
-    const size_t size = (size_t)(avi->vertices * n) * sizeof(double);
-    if (u != NULL) memcpy(u, avi->view->u, size);
-    if (rate != NULL) memcpy(rate, avi->view->rate, size);
-    return DVI_OK;
-  }
   for (int64_t k = 0; k < count; k++) {
-    double all[DVI__SOLID_AXES];
+    const int64_t at = component != NULL ? component[k] : k;
+    double rates[DVI__SOLID_AXES];
     dvi__solid_node node;
-    if (u != NULL) {
-      DVI_TRY(see_node(avi, component[k] / n, &node));
-      u[k] = node.u[component[k] % n];
+    if (is_seen) {
+      if (u != NULL) u[k] = avi->view->u[at];
+      if (rate != NULL) rate[k] = avi->view->rate[at];
+    } else if (u != NULL) {
+      DVI_TRY(see_node(avi, (int)(at / n), &node));
+      u[k] = node.u[at % n];
+    } else {
+      DVI_TRY(see_rate(avi, (int)(at / n), rates));
+      rate[k] = rates[at % n];
     }
-    if (rate == NULL) continue;
-    if (!is_seen) DVI_TRY(see_rate(avi, component[k] / n, all));
-    rate[k] = is_seen ? avi->view->rate[component[k]] : all[component[k] % n];
   }
   return DVI_OK;
 }
