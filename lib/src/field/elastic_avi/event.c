@@ -155,7 +155,7 @@ int dvi__solid_act(dvi__solid_avi *avi, int64_t c, double t)
 {
   if (avi->cell_kind[c] != 0 || avi->is_linear) return act_guarded(avi, c, t);
   const int n = avi->n, *corner = avi->corner + c * (n + 1);
-  double u[DVI__SOLID_NUMBERS], f[DVI__SOLID_NUMBERS];
+  double u[DVI__SOLID_NUMBERS] = {0}, f[DVI__SOLID_NUMBERS];
   for (int a = 0; a <= n; a++) {
     dvi__solid_node *node = avi->state.node + corner[a];
     const double span = t - node->tau;
