@@ -6,6 +6,7 @@
 #define DVI_SCENE_H
 #include <dvi/control.h>
 #include <dvi/density.h>
+#include <dvi/elastic.h>
 #include <dvi/field.h>
 #include <dvi/march.h>
 #include <dvi/moving.h>
@@ -142,8 +143,12 @@ const dvi_system *dvi_scene_system(const dvi_scene *scene);
 const dvi_system_terms *dvi_scene_terms(const dvi_scene *scene);
 
 /** Return the field of a scene with a mesh, whose unknowns are the coordinates u_1, u_2 and so on.
- *  Owned by the scene. NULL if the scene has no mesh. */
+ *  Owned by the scene. NULL if the scene has no mesh, or a solid on it. */
 const dvi_field *dvi_scene_field(const dvi_scene *scene);
+
+/** Return the solid of a scene with `field: elastic`, whose unknowns are the coordinates u_1, u_2
+ *  and so on. Owned by the scene. NULL for other scenes. */
+const dvi_elastic *dvi_scene_elastic(const dvi_scene *scene);
 
 /** Return the field of a scene with a density, owned by the scene. Its coordinates are named u_1,
  *  u_2 and so on by its fields. NULL if the scene has no density, or one on a mesh that moves. */

@@ -55,8 +55,7 @@ static bool read_components(dvi_scene *scene, const char *part, const dvi__tree 
     component *c = dvi__arena_take(&scene->arena, 1, sizeof *c);
     if (c == NULL) return dvi__scene_no_memory(scene);
     c->axis = i;
-    if (!dvi__solid_function_read(scene, value, DVI__SOLID_TIME, 1, "a displacement",
-                                  &c->function))
+    if (!dvi__solid_function_read(scene, value, DVI__SOLID_TIME, 1, "a displacement", &c->function))
       return false;
     dvi_elastic_condition *made = next_condition(scene, part);
     made->component[i] = 1;
@@ -128,8 +127,7 @@ static bool read_load(dvi_scene *scene, const dvi__tree *key, const dvi__tree *t
   struct dvi__scene_elastic *s = scene->field->elastic;
   dvi__solid_function *function;
   int64_t count;
-  if (!dvi__want_mapping(scene, tree, "a load") ||
-      !dvi__want_keys(scene, tree, "a load", 2, known))
+  if (!dvi__want_mapping(scene, tree, "a load") || !dvi__want_keys(scene, tree, "a load", 2, known))
     return false;
   if (tree->count != 1)
     return dvi__scene_refuse(scene, tree->span,
@@ -140,14 +138,13 @@ static bool read_load(dvi_scene *scene, const dvi__tree *key, const dvi__tree *t
   const int degree = scene->field->dimension - is_traction;
   (void)dvi_mesh_part_cells(scene->field->mesh, key->text, degree, &count);
   if (count <= 0 && is_traction)
-    return dvi__scene_refuse(scene, key->span,
-                             "the mesh has no part '%s' of facets for a traction; 'boundary' is one",
-                             key->text);
+    return dvi__scene_refuse(
+        scene, key->span, "the mesh has no part '%s' of facets for a traction; 'boundary' is one",
+        key->text);
   if (count <= 0) return dvi__refuse_part(scene, key->span, key->text, true);
-  if (!dvi__solid_function_read(scene, tree->child[0],
-                                DVI__SOLID_TIME | (is_traction ? DVI__SOLID_NORMAL : 0),
-                                scene->field->space, is_traction ? "a traction" : "a force",
-                                &function))
+  if (!dvi__solid_function_read(
+          scene, tree->child[0], DVI__SOLID_TIME | (is_traction ? DVI__SOLID_NORMAL : 0),
+          scene->field->space, is_traction ? "a traction" : "a force", &function))
     return false;
   s->load[s->loads++] = (dvi_elastic_load){
       .part = key->text, .force = push, .is_steady = !function->has_time, .user = function};
@@ -198,8 +195,7 @@ static bool add_weight(dvi_scene *scene, const char *part, double density)
   if (w == NULL) return dvi__scene_no_memory(scene);
   w->n = scene->field->space;
   for (int i = 0; i < w->n; i++) w->force[i] = density * s->acceleration[i];
-  s->load[s->loads++] = (dvi_elastic_load){
-      .part = part, .force = weigh, .is_steady = 1, .user = w};
+  s->load[s->loads++] = (dvi_elastic_load){.part = part, .force = weigh, .is_steady = 1, .user = w};
   return true;
 }
 
@@ -346,14 +342,12 @@ bool dvi__solid_check_obstacles(dvi_scene *scene)
     for (int i = 0; i < n; i++) x[i] = X[node[k] * n + i] + s->u[node[k] * n + i];
     for (int i = 0; i < s->obstacles; i++)
       if (gap_of(s->obstacle + i, n, x) < -1e-12 * (1 + fabs(x[0]) + fabs(x[1]) + fabs(x[2])))
-        return dvi__scene_refuse(scene,
-                                 dvi__tree_find(dvi__tree_find(scene->tree, "obstacles"),
-                                                s->obstacle[i].name)
-                                     ->span,
-                                 "at the start node %d, (%g, %g, %g), is %g inside of the obstacle "
-                                 "'%s'; move one of them",
-                                 node[k], x[0], x[1], x[2], -gap_of(s->obstacle + i, n, x),
-                                 s->obstacle[i].name);
+        return dvi__scene_refuse(
+            scene,
+            dvi__tree_find(dvi__tree_find(scene->tree, "obstacles"), s->obstacle[i].name)->span,
+            "at the start node %d, (%g, %g, %g), is %g inside of the obstacle "
+            "'%s'; move one of them",
+            node[k], x[0], x[1], x[2], -gap_of(s->obstacle + i, n, x), s->obstacle[i].name);
   }
   return true;
 }

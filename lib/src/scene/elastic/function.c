@@ -265,7 +265,7 @@ static int energy_of_block(const dvi__solid_function *f, int some, int64_t count
   const int entries = f->n * f->n, first = 2 * f->n;
   const dvi_potential *of = f->component;
   double place[DVI__SOLID_PLACE * BLOCK] = {0}, slope[DVI__SOLID_PLACE * BLOCK],
-                                     second[DVI__SOLID_PLACE * DVI__SOLID_PLACE * BLOCK];
+                                  second[DVI__SOLID_PLACE * DVI__SOLID_PLACE * BLOCK];
   int failed = 0;
   for (int e = 0; e < entries; e++)
     memcpy(place + (ptrdiff_t)(first + e) * some, F + e * count + from,
@@ -274,8 +274,7 @@ static int energy_of_block(const dvi__solid_function *f, int some, int64_t count
   if (P != NULL && failed == 0) {
     failed = of->gradient_batch(some, time, place, slope, of->user);
     for (int e = 0; e < entries && failed == 0; e++)
-      memcpy(P + e * count + from, slope + (ptrdiff_t)(first + e) * some,
-             (size_t)some * sizeof *P);
+      memcpy(P + e * count + from, slope + (ptrdiff_t)(first + e) * some, (size_t)some * sizeof *P);
   }
   if (Hessian != NULL && failed == 0) {
     failed = of->hessian_batch(some, time, place, second, of->user);

@@ -39,8 +39,9 @@ static bool read_lame(dvi_scene *scene, const dvi__tree *lambda, const dvi__tree
       !dvi__solid_number(scene, mu, "mu", false, &m->mu))
     return false;
   return (m->lambda > -2 * m->mu / n && m->lambda < HUGE_VAL) ||
-         dvi__scene_refuse(scene, lambda->span, "lambda is %g, where a number above -2 mu/%d is "
-                                                "wanted, here %g",
+         dvi__scene_refuse(scene, lambda->span,
+                           "lambda is %g, where a number above -2 mu/%d is "
+                           "wanted, here %g",
                            m->lambda, n, -2 * m->mu / n);
 }
 
@@ -77,10 +78,10 @@ static bool read_constants(dvi_scene *scene, const dvi__tree *tree, dvi_elastic_
   if (m->law != DVI_ELASTIC_MOONEY_RIVLIN)
     return dvi__scene_refuse(scene, mooney->span, "'mooney' is of 'law: mooney-rivlin'");
   return dvi__solid_number(scene, mooney, "mooney", true, &m->mooney) &&
-         (m->mooney <= m->mu ||
-          dvi__scene_refuse(scene, mooney->span, "mooney is %g, where a number from 0 to mu, here "
-                                                 "%g, is wanted",
-                            m->mooney, m->mu));
+         (m->mooney <= m->mu || dvi__scene_refuse(scene, mooney->span,
+                                                  "mooney is %g, where a number from 0 to mu, here "
+                                                  "%g, is wanted",
+                                                  m->mooney, m->mu));
 }
 
 /* ---- laws ---- */
@@ -110,7 +111,8 @@ static bool read_energy(dvi_scene *scene, const dvi__tree *law, const dvi__tree 
   static const char *const known[] = {"law", "rho", "alpha", "beta"};
   dvi__solid_function *W;
   int which;
-  if (is_unknown_word(scene, law)) return dvi__tree_word(scene, law, "a law", LAWS, law_word, &which);
+  if (is_unknown_word(scene, law))
+    return dvi__tree_word(scene, law, "a law", LAWS, law_word, &which);
   if (!dvi__want_keys(scene, tree, "a material with a stored energy", 4, known) ||
       !dvi__solid_function_read(scene, law, DVI__SOLID_ENERGY, 1, "a stored energy", &W))
     return false;
@@ -122,7 +124,7 @@ static bool read_energy(dvi_scene *scene, const dvi__tree *law, const dvi__tree 
 static bool read_material(dvi_scene *scene, const dvi__tree *key, const dvi__tree *tree,
                           dvi_elastic_material *m)
 {
-  static const char *const known[] = {"law",     "lambda", "mu",  "young", "poisson",
+  static const char *const known[] = {"law",    "lambda", "mu",    "young", "poisson",
                                       "mooney", "rho",    "alpha", "beta"};
   int64_t count;
   const dvi_mesh *mesh = scene->field->mesh;

@@ -72,8 +72,9 @@ static bool read_at(dvi_scene *scene, const dvi__tree *tree, const dvi__tree *at
   const dvi__tree *along = dvi__tree_find(tree, "along");
   if (!dvi__want_keys(scene, tree, "a probe at a point", 3, known)) return false;
   if (at == NULL)
-    return dvi__scene_refuse(scene, tree->span, "a probe of %s is at a point of the reference, as "
-                                                "in '{of: %s, at: [0, 0, 1]}'",
+    return dvi__scene_refuse(scene, tree->span,
+                             "a probe of %s is at a point of the reference, as "
+                             "in '{of: %s, at: [0, 0, 1]}'",
                              word[probe->of], word[probe->of]);
   probe->place = at->span;
   if (!dvi__point_read(scene, at, scene->field->space, "a point", probe->at)) return false;
@@ -109,8 +110,7 @@ static bool read_probe(dvi_scene *scene, const dvi__tree *key, const dvi__tree *
   const dvi__tree *of = dvi__tree_find(tree, "of");
   if (of != NULL && !dvi__tree_word(scene, of, "what a probe is of", WORDS, word, &which))
     return false;
-  dvi__solid_probe probe = {
-      .name = key->text, .span = key->span, .of = (dvi__solid_quantity)which};
+  dvi__solid_probe probe = {.name = key->text, .span = key->span, .of = (dvi__solid_quantity)which};
   return which < DVI__SOLID_TOTAL ? read_at(scene, tree, dvi__tree_find(tree, "at"), &probe)
                                   : read_part(scene, tree, &probe);
 }
@@ -216,8 +216,7 @@ static int watch(double t, const double *q, const double *p, double *value, void
 {
   const dvi__solid_probe *probe = user;
   const dvi_mesh *mesh = dvi_elastic_mesh(probe->solid);
-  const size_t n = (size_t)dvi_mesh_dimension(mesh),
-               cells = (size_t)dvi_mesh_count(mesh, (int)n);
+  const size_t n = (size_t)dvi_mesh_dimension(mesh), cells = (size_t)dvi_mesh_count(mesh, (int)n);
   const bool is_stress = probe->of == DVI__SOLID_STRESS || probe->of == DVI__SOLID_MISES;
   motion m = {.u = NULL};
   dvi_status status = find_motion(probe->solid, t, q, p, is_stress ? cells * n * n : 0, &m);
@@ -243,9 +242,9 @@ static bool place_probe(dvi_scene *scene, dvi__solid_probe *probe)
   const dvi_status status = dvi_mesh_locate(mesh, 1, probe->at, &probe->cell, probe->weight);
   if (status != DVI_OK)
     return dvi__complain(scene->complaint, status, probe->place, "%s", dvi_last_error());
-  return probe->cell >= 0 || dvi__scene_refuse(scene, probe->place,
-                                               "the probe '%s' is outside of the mesh",
-                                               probe->name);
+  return probe->cell >= 0 ||
+         dvi__scene_refuse(scene, probe->place, "the probe '%s' is outside of the mesh",
+                           probe->name);
 }
 
 bool dvi__solid_place_probes(dvi_scene *scene)

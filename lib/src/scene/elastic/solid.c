@@ -42,10 +42,11 @@ bool dvi__elastic_check_mesh(dvi_scene *scene, const dvi__tree *section)
 bool dvi__elastic_refuse_section(dvi_scene *scene, const dvi__tree *section, const char *name)
 {
   return !dvi__is_elastic(scene) ||
-         dvi__scene_refuse(scene, section->span, "'%s' is not of 'field: elastic'%s", name,
-                           strcmp(name, "damping") == 0
-                               ? "; a material has alpha and beta, the damping by mass and stiffness"
-                               : "");
+         dvi__scene_refuse(
+             scene, section->span, "'%s' is not of 'field: elastic'%s", name,
+             strcmp(name, "damping") == 0
+                 ? "; a material has alpha and beta, the damping by mass and stiffness"
+                 : "");
 }
 
 /* ---- the start ---- */
@@ -88,8 +89,8 @@ static bool evaluate(dvi_scene *scene, const dvi__solid_function *function, doub
 static bool make_start(dvi_scene *scene)
 {
   struct dvi__scene_elastic *s = scene->field->elastic;
-  const size_t n = (size_t)scene->n,
-               numbers = (size_t)dvi_mesh_count(scene->field->mesh, 0) * (size_t)scene->field->space;
+  const size_t n = (size_t)scene->n, numbers = (size_t)dvi_mesh_count(scene->field->mesh, 0) *
+                                               (size_t)scene->field->space;
   s->u = dvi__arena_take(&scene->arena, 2 * numbers, sizeof *s->u);
   scene->q = dvi__arena_take(&scene->arena, 3 * n, sizeof *scene->q);
   if (s->u == NULL || scene->q == NULL) return dvi__scene_no_memory(scene);
@@ -99,9 +100,9 @@ static bool make_start(dvi_scene *scene)
   if (!evaluate(scene, s->value, s->u) || !evaluate(scene, s->rate, s->velocity)) return false;
   dvi_elastic_project(s->solid, s->u, s->velocity, scene->q, scene->v, scene->p);
   const dvi_status status = dvi_elastic_lift(s->solid, 0, scene->q, scene->v, s->u, s->velocity);
-  return status == DVI_OK || dvi__complain(scene->complaint, status,
-                                           dvi__tree_find(scene->tree, "boundary")->span, "%s",
-                                           dvi_last_error());
+  return status == DVI_OK ||
+         dvi__complain(scene->complaint, status, dvi__tree_find(scene->tree, "boundary")->span,
+                       "%s", dvi_last_error());
 }
 
 /* A cell may be inverted where its law is not defined. */
@@ -124,9 +125,15 @@ static bool complain(dvi_scene *scene, const dvi__tree *otherwise, dvi_status st
 {
   static const struct {
     const char *word, *section;
-  } blame[] = {{"load", "loads"},          {"obstacle", "obstacles"}, {"material", "materials"},
-               {"energy", "materials"},    {"stress", "materials"},   {"condition", "boundary"},
-               {"displacement", "boundary"}, {"held", "boundary"},    {"mesh", "mesh"}};
+  } blame[] = {{"load", "loads"},
+               {"obstacle", "obstacles"},
+               {"material", "materials"},
+               {"energy", "materials"},
+               {"stress", "materials"},
+               {"condition", "boundary"},
+               {"displacement", "boundary"},
+               {"held", "boundary"},
+               {"mesh", "mesh"}};
   const dvi__tree *found = NULL;
   for (size_t i = 0; i < sizeof blame / sizeof *blame && found == NULL; i++)
     if (strstr(dvi_last_error(), blame[i].word) != NULL)
@@ -138,10 +145,10 @@ static bool complain(dvi_scene *scene, const dvi__tree *otherwise, dvi_status st
 /* Methods that step over fast motions take the energy in two parts. */
 static int wants_split(const dvi_scene *scene)
 {
-  static const char *const name[] = {"imex", "trig", "multirate", "respa"};
+  static const char *const name[] = {"imex", "trig", "respa", "mollified", "multiscale"};
   const char *method = scene->plan.method;
   for (size_t i = 0; i < sizeof name / sizeof *name && method != NULL; i++)
-    if (strncmp(method, name[i], strlen(name[i])) == 0) return 1;
+    if (strstr(method, name[i]) != NULL) return 1;
   return 0;
 }
 
@@ -195,11 +202,12 @@ const dvi_elastic *dvi_scene_elastic(const dvi_scene *scene)
 
 const char *dvi__elastic_observable(const dvi_scene *scene, int i)
 {
-  static const char *const plane[] = {"energy",     "kinetic",    "stored",  "load", "momentum_x",
-                                      "momentum_y", "angular",    "growth",  "hits", NULL},
-                           *const space[] = {"energy",     "kinetic",   "stored",    "load",
+  static const char *const plane[] = {"energy",     "kinetic", "stored", "load", "momentum_x",
+                                      "momentum_y", "angular", "growth", "hits", NULL},
+                           *const space[] = {"energy",     "kinetic",    "stored",     "load",
                                              "momentum_x", "momentum_y", "momentum_z", "angular_x",
-                                             "angular_y",  "angular_z", "growth",    "hits", NULL};
+                                             "angular_y",  "angular_z",  "growth",     "hits",
+                                             NULL};
   return (scene->field->space == 2 ? plane : space)[i];
 }
 
