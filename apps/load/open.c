@@ -293,7 +293,7 @@ static int refuse_method(const problem *scene, const char *method)
   const bool is_solid = elastic_of(scene) != NULL,
              has_field = is_solid || dvi_scene_field(scene->scene) != NULL;
   if (refuse_march(scene, method) != DONE) return USAGE;
-  hint_at_method(method, has_field ? march_name_at : method_name_at, hint);
+  hint_at_method(method, has_field && !is_solid ? march_name_at : method_name_at, hint);
   const char *error = dvi_last_error(), *list = strstr(error, "; there are galerkin");
   const bool said = strstr(error, "did you mean") != NULL, names = has_field && list != NULL;
   (void)snprintf(sentence, sizeof sentence, "%s: %.*s%s%s", method,

@@ -95,7 +95,7 @@ static int find_stress(const dvi_elastic *e, int64_t cell, const double *u, doub
 {
   const int n = e->n;
   const dvi__solid_material *material = e->materials + e->material[cell];
-  double own[DVI__SOLID_NUMBERS], H[DVI__SOLID_ENTRIES], P[DVI__SOLID_ENTRIES];
+  double own[DVI__SOLID_NUMBERS] = {0}, H[DVI__SOLID_ENTRIES], P[DVI__SOLID_ENTRIES];
   dvi__solid_gather(e, cell, u, own);
   dvi__solid_strain(e, cell, own, H);
   const double J = 1 + dvi__trace(n, H) + dvi__higher_volume(n, H);

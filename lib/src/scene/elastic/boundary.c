@@ -126,7 +126,7 @@ static bool read_load(dvi_scene *scene, const dvi__tree *key, const dvi__tree *t
   static const char *const known[] = {"force", "traction"};
   struct dvi__scene_elastic *s = scene->field->elastic;
   dvi__solid_function *function;
-  int64_t count;
+  int64_t cells, count;
   if (!dvi__want_mapping(scene, tree, "a load") || !dvi__want_keys(scene, tree, "a load", 2, known))
     return false;
   if (tree->count != 1)
@@ -136,8 +136,9 @@ static bool read_load(dvi_scene *scene, const dvi__tree *key, const dvi__tree *t
                              "-2*normal}'");
   const bool is_traction = strcmp(tree->key[0]->text, "traction") == 0;
   const int degree = scene->field->dimension - is_traction;
+  (void)dvi_mesh_part_cells(scene->field->mesh, key->text, scene->field->dimension, &cells);
   (void)dvi_mesh_part_cells(scene->field->mesh, key->text, degree, &count);
-  if (count <= 0 && is_traction)
+  if (is_traction && (count <= 0 || cells > 0))
     return dvi__scene_refuse(
         scene, key->span, "the mesh has no part '%s' of facets for a traction; 'boundary' is one",
         key->text);

@@ -106,10 +106,24 @@ static bool define_invariants(dvi_scene *scene, dvi__span span)
   return true;
 }
 
+/* A parameter would take the name of what an energy is made of. */
+static bool check_names(dvi_scene *scene)
+{
+  static const char *const taken[] = {"x", "y", "z", "normal", "F", "I1", "I2", "J"};
+  for (int i = 0; i < scene->parameter_count; i++)
+    for (size_t k = 0; k < sizeof taken / sizeof *taken; k++)
+      if (strcmp(scene->parameter[i].name, taken[k]) == 0)
+        return dvi__scene_refuse(scene, scene->parameter[i].span,
+                                 "'%s' is a name of a solid's place or strain; choose another name",
+                                 taken[k]);
+  return true;
+}
+
 bool dvi__elastic_name_place(dvi_scene *scene, const dvi__tree *section)
 {
   static const char *const axis[] = {"x", "y", "z"};
   const int n = scene->field->space;
+  if (!check_names(scene)) return false;
   scene->coordinate = dvi__arena_take(&scene->arena, (size_t)n + 2, sizeof *scene->coordinate);
   scene->zeros = dvi__arena_take(&scene->arena, 2 * (size_t)DVI__SOLID_PLACE, sizeof *scene->zeros);
   if (scene->coordinate == NULL || scene->zeros == NULL) return dvi__scene_no_memory(scene);
