@@ -51,7 +51,8 @@ static bool report_file(dvi_scene *scene, const dvi__tree *file, dvi_status stat
 }
 
 /* Refuse lists of some of the axes, whose other ones would be as long as 1, say. One number of
- * cells may stand for all axes, and one grading is that of the first axis. Shapes have lengths of other kinds. */
+ * cells may stand for all axes, and one grading is that of the first axis. Shapes have lengths of
+ * other kinds. */
 static bool has_all_axes(dvi_scene *scene, const dvi__tree *section, const char *generator)
 {
   static const char *const grid[] = {"box", "kuhn", "kuhn-torus", "staggered", "bcc-torus"},
