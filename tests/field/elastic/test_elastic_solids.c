@@ -25,7 +25,7 @@ static void displace(const dvi_elastic *solid, double *u)
   const int n = dvi_mesh_dimension(mesh);
   for (int64_t k = 0; k < dvi_mesh_count(mesh, 0) * n; k++) {
     u[k] = 0;
-    for (int j = 0; j < n; j++) u[k] += affine[k % n][j] * X[k / n * n + j];
+    for (int j = 0; j < n && j < 3; j++) u[k] += affine[k % n][j] * X[k / n * n + j];
   }
 }
 

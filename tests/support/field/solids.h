@@ -10,8 +10,8 @@ dvi_elastic_material unit_material(dvi_elastic_law law);
 /* Create a solid on a mesh, which the solid owns then, of one material with the other terms. */
 dvi_elastic *solid_on(dvi_mesh *mesh, dvi_elastic_material material, dvi_elastic_terms terms);
 
-/* The unit cube, or in a plane the unit square, of Kuhn's simplices, whose nodes along the x axis are
- * at (i/m)^grading, and evenly distributed along the others. */
+/* The unit cube, or in a plane the unit square, of Kuhn's simplices, whose nodes along the x axis
+ * are at (i/m)^grading, and evenly distributed along the others. */
 dvi_elastic *block(int dimension, int cells, double grading, dvi_elastic_law law);
 
 /* Give the velocities scale (.2 Y, -.1 Z, .15 X Z), in a plane scale (.2 Y, .15 X Y) [vertices*n]

@@ -11,14 +11,9 @@
 
 /* ---- forces ---- */
 
-/* The force with n as a constant. */
-static inline int find_force(int n, const dvi_elastic *e, int64_t cell, const double *u, double *f)
+/* Give -V P g_a. n is a constant where this is called. */
+static inline void pull(int n, double volume, const double *g, const double *P, double *f)
 {
-  double H[DVI__SOLID_ENTRIES], P[DVI__SOLID_ENTRIES];
-  const double *g = e->gradient + cell * (n + 1) * n, volume = e->volume[cell];
-  dvi__displacement_gradient(n, g, u, H);
-  const int returned = dvi__law_stress(n, e->materials + e->material[cell], H, P);
-  if (returned != 0) return returned;
   for (int i = 0; i < n; i++) {
     double first = 0;
     for (int a = 1; a <= n; a++) {
@@ -29,12 +24,74 @@ static inline int find_force(int n, const dvi_elastic *e, int64_t cell, const do
     }
     f[i] = first;
   }
-  return 0;
+}
+
+/* The force with n as a constant. */
+static inline int find_force(int n, const dvi_elastic *e, int64_t cell, const double *u, double *f)
+{
+  double H[DVI__SOLID_ENTRIES], P[DVI__SOLID_ENTRIES];
+  const double *g = e->gradient + cell * (n + 1) * n;
+  dvi__displacement_gradient(n, g, u, H);
+  const int returned = dvi__law_stress(n, e->materials + e->material[cell], H, P);
+  if (returned == 0) pull(n, e->volume[cell], g, P, f);
+  return returned;
 }
 
 int dvi__solid_force(const dvi_elastic *e, int64_t cell, const double *u, double *f)
 {
   return e->n == 3 ? find_force(3, e, cell, u, f) : find_force(2, e, cell, u, f);
+}
+
+/* ---- forces of several cells ---- */
+
+/* Give the forces of cells of one material whose energy is given, by one call of it. Returns 0 if
+ * the call failed, or its numbers are not finite. */
+static int find_given(const dvi_elastic *e, int64_t first, int count, const double *u, double *f)
+{
+  const int n = e->n, entries = n * n, numbers = (n + 1) * n;
+  const dvi__solid_material *m = e->materials + e->material[first];
+  double F[DVI__SOLID_ENTRIES * DVI__SOLID_BATCH] = {0}, P[DVI__SOLID_ENTRIES * DVI__SOLID_BATCH];
+  for (int c = 0; c < count; c++) {
+    double H[DVI__SOLID_ENTRIES] = {0};
+    dvi__solid_strain(e, first + c, u + c * numbers, H);
+    for (int k = 0; k < entries; k++) F[k * count + c] = H[k] + (k % (n + 1) == 0);
+  }
+  if (m->energy(count, F, NULL, P, NULL, m->user) != 0) return 0;
+  for (int c = 0; c < count; c++) {
+    double own[DVI__SOLID_ENTRIES] = {0};
+    for (int k = 0; k < entries; k++) {
+      own[k] = P[k * count + c];
+      if (!isfinite(own[k])) return 0;
+    }
+    pull(n, e->volume[first + c], e->gradient + (first + c) * numbers, own, f + c * numbers);
+  }
+  return 1;
+}
+
+/* Return how many cells from the first on have its material. */
+static int count_alike(const dvi_elastic *e, int64_t first, int most)
+{
+  int count = 1;
+  while (count < most && e->material[first + count] == e->material[first]) count++;
+  return count;
+}
+
+/* Where a call for several cells fails, single ones tell which. */
+int dvi__solid_forces(const dvi_elastic *e, int64_t first, int count, const double *u, double *f,
+                      int *failed)
+{
+  const int numbers = (e->n + 1) * e->n;
+  for (int c = 0, alike; c < count; c += alike) {
+    const int is_given = e->materials[e->material[first + c]].law == DVI_ELASTIC_ENERGY;
+    alike = is_given ? count_alike(e, first + c, count - c) : 1;
+    if (is_given && find_given(e, first + c, alike, u + c * numbers, f + c * numbers)) continue;
+    for (int k = c; k < c + alike; k++) {
+      const int returned = dvi__solid_force(e, first + k, u + k * numbers, f + k * numbers);
+      *failed = k;
+      if (returned != 0) return returned;
+    }
+  }
+  return 0;
 }
 
 /* ---- energies and stiffnesses ---- */

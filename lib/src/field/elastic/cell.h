@@ -19,6 +19,14 @@ static inline void dvi__displacement_gradient(int n, const double *g, const doub
   }
 }
 
+enum { DVI__SOLID_BATCH = 32 };
+
+/* Give the forces [count][(n+1)*n] of `count` cells from `first` on, at most DVI__SOLID_BATCH, at
+ * displacements u [count][(n+1)*n] of their nodes. Energies that are given are called once for
+ * cells in a row. Returns as dvi__solid_force, and in *failed the place of the cell of which. */
+int dvi__solid_forces(const dvi_elastic *e, int64_t first, int count, const double *u, double *f,
+                      int *failed);
+
 /* Give H of a cell. */
 void dvi__solid_strain(const dvi_elastic *e, int64_t cell, const double *u, double *H);
 

@@ -10,21 +10,13 @@
 
 /* ---- the geometry of an obstacle ---- */
 
-/* Give the position [n] of a node, and its rate, without those of the unknowns. Returns as
- * callbacks do. */
-static int find_node(const dvi__solid_contact *of, double t, const double *q, double *x,
-                     double *rate)
-{
-  const dvi_elastic *e = of->elastic;
-  for (int i = 0; i < e->n; i++) {
-    const int k = e->unknown[of->vertex * e->n + i];
-    x[i] = k >= 0 ? q[k] : 0;
-    rate[i] = 0;
-  }
-  const int returned = dvi__solid_given(e, of->vertex, t, x, rate);
-  for (int i = 0; i < e->n; i++) x[i] += e->point[of->vertex * e->n + i];
-  return returned;
-}
+/* A node and an obstacle. */
+typedef struct meeting {
+  double x[DVI_ELASTIC_DIMENSION_MAX];    /* where the node is */
+  double rate[DVI_ELASTIC_DIMENSION_MAX]; /* that of the conditions, 0 of the unknowns */
+  double normal[DVI_ELASTIC_DIMENSION_MAX];
+  double gap;
+} meeting;
 
 /* Give the gap at x, and its gradient, a unit vector [n]. At the centre of a ball it is that of the
  * first axis. */
@@ -42,6 +34,21 @@ static double find_gap(const dvi_obstacle *o, int n, const double *x, double *no
                 : distance == 0 ? sign * (i == 0)
                                 : sign * (x[i] - o->point[i]) / distance;
   return is_plane ? gap : sign * (distance - o->radius);
+}
+
+/* Returns as callbacks do. */
+static int meet(const dvi__solid_contact *of, double t, const double *q, meeting *at)
+{
+  const dvi_elastic *e = of->elastic;
+  *at = (meeting){.gap = 0};
+  for (int i = 0; i < e->n; i++) {
+    const int k = e->unknown[of->vertex * e->n + i];
+    at->x[i] = k >= 0 ? q[k] : 0;
+  }
+  const int returned = dvi__solid_given(e, of->vertex, t, at->x, at->rate);
+  for (int i = 0; i < e->n; i++) at->x[i] += e->point[of->vertex * e->n + i];
+  at->gap = find_gap(of->obstacle, e->n, at->x, at->normal);
+  return returned;
 }
 
 /* Give n-1 unit vectors [n] at right angles to the normal and to each other. */
@@ -66,11 +73,9 @@ static void find_tangents(int n, const double *normal, double *tangent)
 
 static int gap(double t, const double *q, double *phi, void *user)
 {
-  const dvi__solid_contact *of = user;
-  double x[DVI_ELASTIC_DIMENSION_MAX], rate[DVI_ELASTIC_DIMENSION_MAX],
-      normal[DVI_ELASTIC_DIMENSION_MAX];
-  const int returned = find_node(of, t, q, x, rate);
-  if (returned == 0) *phi = find_gap(of->obstacle, of->elastic->n, x, normal);
+  meeting at;
+  const int returned = meet(user, t, q, &at);
+  *phi = at.gap;
   return returned;
 }
 
@@ -84,42 +89,32 @@ static void keep(const dvi__solid_contact *of, const double *vector, double *kep
 
 static int gradient(double t, const double *q, double *phi_q, void *user)
 {
-  const dvi__solid_contact *of = user;
-  double x[DVI_ELASTIC_DIMENSION_MAX], rate[DVI_ELASTIC_DIMENSION_MAX],
-      normal[DVI_ELASTIC_DIMENSION_MAX];
-  const int returned = find_node(of, t, q, x, rate);
-  if (returned != 0) return returned;
-  (void)find_gap(of->obstacle, of->elastic->n, x, normal);
-  keep(of, normal, phi_q);
-  return 0;
+  meeting at;
+  const int returned = meet(user, t, q, &at);
+  keep(user, at.normal, phi_q);
+  return returned;
 }
 
 static int gap_rate(double t, const double *q, double *phi_t, void *user)
 {
   const dvi__solid_contact *of = user;
-  double x[DVI_ELASTIC_DIMENSION_MAX], rate[DVI_ELASTIC_DIMENSION_MAX],
-      normal[DVI_ELASTIC_DIMENSION_MAX];
-  const int returned = find_node(of, t, q, x, rate);
-  if (returned != 0) return returned;
-  (void)find_gap(of->obstacle, of->elastic->n, x, normal);
+  meeting at;
+  const int returned = meet(of, t, q, &at);
   *phi_t = 0;
-  for (int i = 0; i < of->elastic->n; i++) *phi_t += normal[i] * rate[i];
-  return 0;
+  for (int i = 0; i < of->elastic->n; i++) *phi_t += at.normal[i] * at.rate[i];
+  return returned;
 }
 
 static int tangents(double t, const double *q, double *T, void *user)
 {
   const dvi__solid_contact *of = user;
   const int n = of->elastic->n;
-  double x[DVI_ELASTIC_DIMENSION_MAX], rate[DVI_ELASTIC_DIMENSION_MAX],
-      normal[DVI_ELASTIC_DIMENSION_MAX],
-      tangent[DVI_ELASTIC_DIMENSION_MAX * DVI_ELASTIC_DIMENSION_MAX];
-  const int returned = find_node(of, t, q, x, rate);
-  if (returned != 0) return returned;
-  (void)find_gap(of->obstacle, n, x, normal);
-  find_tangents(n, normal, tangent);
+  meeting at;
+  double tangent[DVI_ELASTIC_DIMENSION_MAX * DVI_ELASTIC_DIMENSION_MAX];
+  const int returned = meet(of, t, q, &at);
+  find_tangents(n, at.normal, tangent);
   for (int a = 0; a < n - 1; a++) keep(of, tangent + a * n, T + a * of->count);
-  return 0;
+  return returned;
 }
 
 /* ---- terms ---- */
@@ -169,11 +164,11 @@ dvi_status dvi__solid_make_contacts(dvi__solid_system *s)
   int64_t nodes = 0;
   if (e->obstacles == 0) return DVI_OK;
   for (int64_t v = 0; v < e->vertices; v++) nodes += can_hit(e, v);
-  s->contact = DVI_NEW(dvi__solid_contact, nodes * e->obstacles);
-  s->contact_term = DVI_NEW(dvi_contact, nodes * e->obstacles);
+  const int64_t contacts = nodes * e->obstacles;
+  s->contact = DVI_NEW(dvi__solid_contact, contacts);
+  s->contact_term = DVI_NEW(dvi_contact, contacts);
   if (s->contact == NULL || s->contact_term == NULL)
-    return dvi__fail(DVI_NO_MEMORY, "elastic: no memory for %lld contacts",
-                     (long long)(nodes * e->obstacles));
+    return dvi__fail(DVI_NO_MEMORY, "elastic: no memory for %lld contacts", (long long)contacts);
   for (int o = 0; o < e->obstacles; o++)
     for (int64_t v = 0; v < e->vertices; v++)
       if (can_hit(e, v)) set_contact(s, v, e->obstacle + o);

@@ -85,7 +85,7 @@ static int given_hessian(int n, const dvi__solid_material *m, const double *H, d
 
 int dvi__law_energy(int n, const dvi__solid_material *m, const double *H, double *W)
 {
-  double E[DVI__SOLID_ENTRIES];
+  double E[DVI__SOLID_ENTRIES] = {0};
   if (m->law == DVI_ELASTIC_ENERGY) return given_energy(n, m, H, W);
   if (m->law == DVI_ELASTIC_LINEAR) {
     for (int i = 0; i < n; i++)
@@ -156,7 +156,7 @@ int dvi__law_hessian(int n, const dvi__solid_material *m, const double *H, doubl
 {
   static const double rest[DVI__SOLID_ENTRIES];
   const int is_linear = m->law == DVI_ELASTIC_LINEAR;
-  double E[DVI__SOLID_ENTRIES];
+  double E[DVI__SOLID_ENTRIES] = {0};
   parts of = {.a = 0};
   int returned = 0;
   if (m->law == DVI_ELASTIC_ENERGY) return given_hessian(n, m, H, A);

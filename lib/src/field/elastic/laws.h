@@ -90,7 +90,7 @@ static inline void dvi__linear_stress(int n, const dvi__solid_material *m, const
 /* P = F S with S = lambda tr E I + 2 mu E. */
 static inline void dvi__svk_stress(int n, const dvi__solid_material *m, const double *H, double *P)
 {
-  double S[DVI__SOLID_ENTRIES];
+  double S[DVI__SOLID_ENTRIES] = {0};
   dvi__green_strain(n, H, S);
   const double pressure = m->lambda * dvi__trace(n, S), twice = 2 * m->mu;
   for (int k = 0; k < n * n; k++) S[k] *= twice;
@@ -106,7 +106,7 @@ static inline void dvi__svk_stress(int n, const dvi__solid_material *m, const do
 /* Add 2 m (tr E F - F E). */
 static inline void dvi__add_mooney_stress(int n, double m, const double *H, double *P)
 {
-  double E[DVI__SOLID_ENTRIES];
+  double E[DVI__SOLID_ENTRIES] = {0};
   dvi__green_strain(n, H, E);
   const double t = dvi__trace(n, E);
   for (int i = 0; i < n; i++) E[i * n + i] -= t;
@@ -122,7 +122,7 @@ static inline void dvi__add_mooney_stress(int n, double m, const double *H, doub
 static inline int dvi__logarithmic_stress(int n, const dvi__solid_material *m, const double *H,
                                           double *P)
 {
-  double G[DVI__SOLID_ENTRIES];
+  double G[DVI__SOLID_ENTRIES] = {0};
   const double growth = dvi__trace(n, H) + dvi__higher_volume(n, H);
   if (!(growth > -1)) return 1;
   dvi__inverse_transposed(n, H, 1 + growth, G);

@@ -24,7 +24,7 @@ static void find_rest_force(const dvi_elastic *e, int64_t cell, const double *u,
 {
   const int n = e->n;
   const double *g = e->gradient + cell * (n + 1) * n;
-  double H[DVI__SOLID_ENTRIES], P[DVI__SOLID_ENTRIES];
+  double H[DVI__SOLID_ENTRIES] = {0}, P[DVI__SOLID_ENTRIES] = {0};
   dvi__solid_strain(e, cell, u, H);
   find_rest_stress(n, e->materials[e->material[cell]].rest, H, P);
   for (int a = 0; a <= n; a++)
@@ -34,26 +34,28 @@ static void find_rest_force(const dvi_elastic *e, int64_t cell, const double *u,
     }
 }
 
-/* Functions of a share return as dvi__solid_force. */
-static int share_force(const dvi_elastic *e, dvi__solid_share share, int64_t cell, const double *u,
-                       double *f)
+/* Functions of a share return as dvi__solid_force. That of forces is for several cells. */
+static int share_forces(const dvi_elastic *e, dvi__solid_share share, int64_t first, int count,
+                        const double *u, double *f, int *failed)
 {
-  double rest[NUMBERS];
-  if (share == DVI__SOLID_STIFFNESS) {
-    find_rest_force(e, cell, u, f);
-    return 0;
+  const int numbers = (e->n + 1) * e->n;
+  if (share != DVI__SOLID_STIFFNESS) {
+    const int returned = dvi__solid_forces(e, first, count, u, f, failed);
+    if (share == DVI__SOLID_STORED || returned != 0) return returned;
   }
-  const int returned = dvi__solid_force(e, cell, u, f);
-  if (share == DVI__SOLID_STORED || returned != 0) return returned;
-  find_rest_force(e, cell, u, rest);
-  for (int k = 0; k < (e->n + 1) * e->n; k++) f[k] -= rest[k];
+  for (int c = 0; c < count; c++) {
+    double rest[NUMBERS] = {0}, *own = f + c * numbers;
+    find_rest_force(e, first + c, u + c * numbers, rest);
+    for (int k = 0; k < numbers; k++)
+      own[k] = share == DVI__SOLID_STIFFNESS ? rest[k] : own[k] - rest[k];
+  }
   return 0;
 }
 
 static int share_energy(const dvi_elastic *e, dvi__solid_share share, int64_t cell, const double *u,
                         double *energy)
 {
-  double f[NUMBERS];
+  double f[NUMBERS] = {0};
   *energy = 0;
   if (share != DVI__SOLID_STIFFNESS) {
     const int returned = dvi__solid_stored(e, cell, u, energy);
@@ -108,15 +110,19 @@ static int cell_gradient(double t, const double *q, double *V_q, void *user)
 {
   const dvi__solid_potential *of = user;
   const dvi_elastic *e = of->system->elastic;
-  const int n = e->n;
+  const int numbers = (e->n + 1) * e->n;
   memset(V_q, 0, (size_t)e->unknowns * sizeof *V_q);
-  for (int64_t c = 0; c < e->cells; c++) {
-    double u[NUMBERS], f[NUMBERS];
-    int returned = dvi__solid_gather_unknowns(e, c, t, q, u);
-    if (returned == 0) returned = share_force(e, of->share, c, u, f);
-    if (returned != 0) return because(e, c, returned);
-    for (int k = 0; k < (n + 1) * n; k++) f[k] = -f[k];
-    dvi__solid_scatter(e, c, f, V_q);
+  for (int64_t first = 0; first < e->cells; first += DVI__SOLID_BATCH) {
+    double u[DVI__SOLID_BATCH * NUMBERS], f[DVI__SOLID_BATCH * NUMBERS] = {0};
+    const int64_t left = e->cells - first;
+    const int count = left < DVI__SOLID_BATCH ? (int)left : DVI__SOLID_BATCH;
+    int returned = 0, failed = 0;
+    for (int c = 0; c < count && returned == 0; c++, failed = c)
+      returned = dvi__solid_gather_unknowns(e, first + c, t, q, u + c * numbers);
+    if (returned == 0) returned = share_forces(e, of->share, first, count, u, f, &failed);
+    if (returned != 0) return because(e, first + failed, returned);
+    for (int k = 0; k < count * numbers; k++) f[k] = -f[k];
+    for (int c = 0; c < count; c++) dvi__solid_scatter(e, first + c, f + c * numbers, V_q);
   }
   return 0;
 }
@@ -149,10 +155,10 @@ static int cell_rate(double t, const double *q, double *V_t, void *user)
   *V_t = 0;
   for (int64_t c = 0; c < e->cells; c++) {
     double u[NUMBERS], f[NUMBERS], rate[NUMBERS];
-    int returned = dvi__solid_driven_rates(e, c, t, rate);
+    int failed, returned = dvi__solid_driven_rates(e, c, t, rate);
     if (returned == 0) continue;
     if (returned > 0) returned = dvi__solid_gather_unknowns(e, c, t, q, u);
-    if (returned == 0) returned = share_force(e, of->share, c, u, f);
+    if (returned == 0) returned = share_forces(e, of->share, c, 1, u, f, &failed);
     if (returned != 0) return because(e, c, returned);
     for (int k = 0; k < (e->n + 1) * e->n; k++) *V_t -= f[k] * rate[k];
   }
@@ -257,9 +263,9 @@ dvi_status dvi__solid_make_pull(dvi__solid_system *s)
   s->pull = DVI_NEW(double, e->unknowns);
   if (s->pull == NULL) return dvi__fail(DVI_NO_MEMORY, "elastic: no memory for a system");
   for (int64_t c = 0; c < e->cells; c++) {
-    double u[NUMBERS], f[NUMBERS], energy;
+    double u[NUMBERS], f[NUMBERS] = {0}, energy;
     dvi__solid_gather(e, c, e->steady, u);
-    (void)share_force(e, DVI__SOLID_STIFFNESS, c, u, f);
+    find_rest_force(e, c, u, f);
     (void)share_energy(e, DVI__SOLID_STIFFNESS, c, u, &energy);
     for (int k = 0; k < (n + 1) * n; k++) f[k] = -f[k];
     dvi__solid_scatter(e, c, f, s->pull);
@@ -346,7 +352,7 @@ dvi_status dvi__solid_make_load(dvi__solid_system *s)
   s->load = DVI_NEW(double, e->unknowns);
   if (s->load == NULL) return dvi__fail(DVI_NO_MEMORY, "elastic: no memory for loads");
   for (int64_t c = 0; c < e->cells; c++) {
-    double u[NUMBERS], f[NUMBERS] = {0};
+    double u[NUMBERS] = {0}, f[NUMBERS] = {0};
     const int returned = dvi__solid_add_load(e, c, 0, f);
     if (returned != 0)
       return dvi__fail(DVI_CALLBACK_FAILED, "elastic: a load returned %d at cell %lld", returned,

@@ -124,10 +124,11 @@ dvi_status dvi__rigid_create(const dvi_elastic *e, dvi__rigid *rigid)
   measure_bodies(rigid);
   products sums = {.all = DVI_NEW(double, rigid->bodies *MOTIONS *MOTIONS),
                    .given = DVI_NEW(double, rigid->bodies *MOTIONS *MOTIONS)};
-  dvi_status status = sums.all != NULL && sums.given != NULL
-                          ? DVI_OK
-                          : dvi__fail(DVI_NO_MEMORY, "elastic: no memory for rigid motions");
-  if (status == DVI_OK) sum_products(rigid, &sums);
+  dvi_status status = DVI_OK;
+  if (sums.all != NULL && sums.given != NULL)
+    sum_products(rigid, &sums);
+  else
+    status = dvi__fail(DVI_NO_MEMORY, "elastic: no memory for rigid motions");
   for (int64_t b = 0; b < rigid->bodies && status == DVI_OK; b++) {
     status = find_free(rigid, &sums, b);
     rigid->count += rigid->of[b].count;

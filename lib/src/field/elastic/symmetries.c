@@ -67,7 +67,7 @@ static int passes_obstacles(const dvi_elastic *e, int axis, int is_turn)
  * symmetric. */
 static int is_objective(int n, const dvi__solid_material *m)
 {
-  double H[DVI__SOLID_ENTRIES], P[DVI__SOLID_ENTRIES];
+  double H[DVI__SOLID_ENTRIES] = {0}, P[DVI__SOLID_ENTRIES] = {0};
   for (int sample = 1; sample <= 3; sample++) {
     double most = 0, skew = 0;
     for (int k = 0; k < n * n; k++) H[k] = 0.05 * sample * sin(1.7 * k + sample);
@@ -119,7 +119,7 @@ void dvi__solid_find_symmetries(dvi__solid_system *s)
                            *const angular[] = {"angular_x", "angular_y", "angular_z"};
   const dvi_elastic *e = s->elastic;
   const int turns = dvi__solid_is_linear(e) || are_objective(e);
-  for (int i = 0; i < e->n; i++)
+  for (int i = 0; i < e->n && i < AXES; i++)
     if (is_untouched(s, i) && passes_obstacles(e, i, 0)) add(s, i, 0, momentum[i]);
   for (int i = e->n == 3 ? 0 : 2; i < AXES && turns; i++)
     if (is_untouched(s, (i + 1) % AXES) && is_untouched(s, (i + 2) % AXES) &&
