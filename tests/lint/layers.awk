@@ -64,6 +64,7 @@ BEGIN {
   sees["field/multisymplectic"] = "core num march field/algebra"
   sees["field/moving"] = "core num field/mesh field/space"
   sees["field/elastic"] = "core num field/algebra field/mesh"
+  sees["field/elastic_avi"] = sees["field/step"] " field/step field/elastic"
   sees["field/rotations"] = "core field/algebra"
   # The library of scenes includes libdvi's public headers, too.
   sees["text"] = ""
