@@ -66,11 +66,17 @@ static const subject of_mesh[] = {{"eps =", "materials"},
                                   {NULL, NULL}};
 
 /* Subjects of sentences on marches of solids. */
-static const subject of_solid[] = {{"obstacle", "obstacles"},    {"the step", "step"},
-                                   {"a step", "step"},           {"common step", "step"},
-                                   {"fraction", "step"},         {" option", "method"},
-                                   {"no method", "method"},      {"inverted", "initial"},
-                                   {"displacement", "boundary"}, {NULL, NULL}};
+static const subject of_solid[] = {{"steps of", "step"},
+                                   {"obstacle", "obstacles"},
+                                   {"the step", "step"},
+                                   {"a step", "step"},
+                                   {"common step", "step"},
+                                   {"fraction", "step"},
+                                   {" option", "method"},
+                                   {"no method", "method"},
+                                   {"inverted", "initial"},
+                                   {"displacement", "boundary"},
+                                   {NULL, NULL}};
 
 /* Return the section of the scene that a sentence of the library is about, or NULL. A step and a
  * method that the options have are not the scene's. */
