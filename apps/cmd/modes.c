@@ -215,6 +215,8 @@ static const char *const details[] = {
     "shapes are E. The static fields are counted and left out, absorbing walls count as pmc, and "
     "sigma as 0. Damped modes, and those of a grid that only yee advances, are found by dvi "
     "spectrum in the columns of a run.\n",
+    "The modes of a solid ('field: elastic') are small vibrations about rest. Motions of the whole "
+    "solid are counted and left out, and damping, loads and obstacles take no part.\n",
     "The modes of fields with a density (section 'density') are those of small motions about 0, or "
     "with --static about the static state near the scene's start. All parts of the density count. "
     "With one-forms the eigenvalues are the lambda of H x = lambda N x with the Hessians of the "

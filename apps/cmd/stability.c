@@ -72,7 +72,7 @@ static const char *const details[] = {
     "all steps, with all of its modes; of a large field, and of steps without a common period, as "
     "most tents are, the fields that grow\n"
     "fastest are searched, and the resolution says which growth the search can have missed. Losses "
-    "are counted, and sources left out.\n"
+    "are counted, and sources left out. Of a solid these are small vibrations about rest.\n"
     "The exit code is 0 for growth, too.\n",
     "Columns of --csv: method, schedule, period, growth, rate, resolution, result.\n",
     "Examples:\n"

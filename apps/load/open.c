@@ -313,6 +313,11 @@ static int refuse_method(const problem *scene, const char *method)
 /* Return the exit code for the status of an integrator's creation. */
 static int open_exit_code(dvi_status status, const problem *scene, const char *method)
 {
+  if (status == DVI_UNSUPPORTED && elastic_of(scene) != NULL && method != scene->method &&
+      strstr(dvi_last_error(), "a fast potential") != NULL)
+    return usage_error("--method %s: a solid has a fast part of its energy if the scene says so: "
+                       "write 'method: %s' there",
+                       method, method);
   if (status != DVI_BAD_OPTION) return status == DVI_OK ? DONE : library_error(status);
   return refuse_method(scene, method);
 }

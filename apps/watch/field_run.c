@@ -55,12 +55,12 @@ static int refuse_options(const run_request *r)
               {r->how.control != NULL, "step-control"}};
   if (r->verify)
     return usage_error(
-        "run: --verify is for mechanical methods such as verlet; compare the rows of "
+        "run: --verify is for mechanical methods such as midpoint; compare the rows of "
         "%s, a march of a field, with those of --h at half the step",
         r->method);
   for (size_t i = 0; i < sizeof list / sizeof *list; i++)
     if (list[i].given)
-      return usage_error("run: --%s is for mechanical methods such as verlet; %s is a march of a "
+      return usage_error("run: --%s is for mechanical methods such as midpoint; %s is a march of a "
                          "field",
                          list[i].name, r->method);
   if (!isnan(r->h) && !(r->h > 0))

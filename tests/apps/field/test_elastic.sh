@@ -81,6 +81,11 @@ expect 2 'a step of the scene' run long.yaml
 says err '^dvi: long.yaml:11:7: .* the least bound is' 'its place'
 expect 2 'a map' run block.yaml --map x.svg
 says err 'is a solid' 'no map of space'
+expect 2 'a method without a fast part' run block.yaml --method imex --h 0.05
+says err "write 'method: imex' there" 'what helps'
+sed 's/^method: .*/method: imex/' block.yaml >imex.yaml
+expect 0 'a fast part' run imex.yaml --h 0.05 --final --columns tip_x
+says out '^1,1.12' 'the motion'
 expect 2 'a static state' solve block.yaml
 says err 'not for solids' 'no static state'
 expect 2 'a C program' emit-c block.yaml --out block.c

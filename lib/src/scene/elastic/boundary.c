@@ -49,7 +49,7 @@ static bool read_components(dvi_scene *scene, const char *part, const dvi__tree 
 {
   const int n = scene->field->space;
   if (!dvi__want_keys(scene, tree, "a displacement by component", n, axis)) return false;
-  for (int i = 0; i < n; i++) {
+  for (int i = 0; i < n && i < DVI__SOLID_AXES; i++) {
     const dvi__tree *value = dvi__tree_find(tree, axis[i]);
     if (value == NULL) continue;
     component *c = dvi__arena_take(&scene->arena, 1, sizeof *c);

@@ -127,7 +127,7 @@ bool dvi__elastic_name_place(dvi_scene *scene, const dvi__tree *section)
   scene->coordinate = dvi__arena_take(&scene->arena, (size_t)n + 2, sizeof *scene->coordinate);
   scene->zeros = dvi__arena_take(&scene->arena, 2 * (size_t)DVI__SOLID_PLACE, sizeof *scene->zeros);
   if (scene->coordinate == NULL || scene->zeros == NULL) return dvi__scene_no_memory(scene);
-  for (int i = 0; i < n; i++)
+  for (int i = 0; i < n && i < DVI__SOLID_AXES; i++)
     if (!add_name(scene, axis[i], section->span, 0, 1)) return false;
   if (!add_name(scene, "normal", section->span, 1, n) ||
       !add_name(scene, "F", section->span, 2, n * n))

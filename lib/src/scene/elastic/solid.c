@@ -5,6 +5,7 @@
 
 #include "scene/elastic/scene_elastic.h"
 #include "scene/sections/sections.h"
+#include "scene/terms/fault.h"
 #include "text/heap.h"
 
 static const char *const march_name[] = {"avi", "verlet"};
@@ -49,6 +50,15 @@ bool dvi__elastic_refuse_section(dvi_scene *scene, const dvi__tree *section, con
                  : "");
 }
 
+/* Complain with the library's last sentence. Of a callback that failed the scene knows why. */
+static bool refuse(dvi_scene *scene, dvi__span span, dvi_status status)
+{
+  if (status == DVI_NO_MEMORY || dvi__fault_status() == DVI_NO_MEMORY)
+    return dvi__scene_no_memory(scene);
+  return dvi__complain(scene->complaint, status == DVI_SINGULAR ? DVI_BAD_FILE : status, span, "%s",
+                       dvi_last_error());
+}
+
 /* ---- the start ---- */
 
 bool dvi__elastic_read_start(dvi_scene *scene, const dvi__tree *section)
@@ -77,6 +87,7 @@ static bool evaluate(dvi_scene *scene, const dvi__solid_function *function, doub
   for (int64_t v = 0; v < dvi_mesh_count(mesh, 0) && function != NULL; v++) {
     bool good = dvi__solid_function_value(function, 0, X + v * n, NULL, values + v * n) == 0;
     for (int i = 0; i < n; i++) good = good && isfinite(values[v * n + i]);
+    if (!good && dvi__fault_status() == DVI_NO_MEMORY) return dvi__scene_no_memory(scene);
     if (!good)
       return dvi__scene_refuse(scene, dvi__tree_find(scene->tree, "initial")->span,
                                "the start is not finite at node %lld, (%g, %g, %g)", (long long)v,
@@ -100,9 +111,7 @@ static bool make_start(dvi_scene *scene)
   if (!evaluate(scene, s->value, s->u) || !evaluate(scene, s->rate, s->velocity)) return false;
   dvi_elastic_project(s->solid, s->u, s->velocity, scene->q, scene->v, scene->p);
   const dvi_status status = dvi_elastic_lift(s->solid, 0, scene->q, scene->v, s->u, s->velocity);
-  return status == DVI_OK ||
-         dvi__complain(scene->complaint, status, dvi__tree_find(scene->tree, "boundary")->span,
-                       "%s", dvi_last_error());
+  return status == DVI_OK || refuse(scene, dvi__tree_find(scene->tree, "boundary")->span, status);
 }
 
 /* A cell may be inverted where its law is not defined. */
@@ -112,9 +121,7 @@ static bool check_start(dvi_scene *scene, const dvi__tree *section)
   const dvi__tree *initial = dvi__tree_find(scene->tree, "initial");
   dvi_elastic_energies energies;
   const dvi_status status = dvi_elastic_energy(s->solid, 0, s->u, s->velocity, NULL, &energies);
-  if (status != DVI_OK)
-    return dvi__complain(scene->complaint, status == DVI_SINGULAR ? DVI_BAD_FILE : status,
-                         (initial != NULL ? initial : section)->span, "%s", dvi_last_error());
+  if (status != DVI_OK) return refuse(scene, (initial != NULL ? initial : section)->span, status);
   return dvi__solid_check_obstacles(scene);
 }
 
@@ -138,8 +145,7 @@ static bool complain(dvi_scene *scene, const dvi__tree *otherwise, dvi_status st
   for (size_t i = 0; i < sizeof blame / sizeof *blame && found == NULL; i++)
     if (strstr(dvi_last_error(), blame[i].word) != NULL)
       found = dvi__tree_find(scene->tree, blame[i].section);
-  return dvi__complain(scene->complaint, status, (found != NULL ? found : otherwise)->span, "%s",
-                       dvi_last_error());
+  return refuse(scene, (found != NULL ? found : otherwise)->span, status);
 }
 
 /* Methods that step over fast motions take the energy in two parts. */
@@ -176,6 +182,7 @@ bool dvi__elastic_make(dvi_scene *scene, const dvi__tree *section)
     return dvi__scene_refuse(scene, section->span,
                              "a solid has materials, as in 'materials: {all: {law: neo-hookean, "
                              "lambda: 1, mu: 1, rho: 1}}'");
+  dvi__fault_clear();
   const dvi_status status = make_solid(scene);
   if (status != DVI_OK) return complain(scene, section, status);
   scene->form = "separable";
