@@ -51,8 +51,8 @@ static bool report_file(dvi_scene *scene, const dvi__tree *file, dvi_status stat
 }
 
 /* Refuse lists of some of the axes, whose other ones would be as long as 1, say. One number of
- * cells may stand for all axes, and one grading is that of the first axis. Shapes have lengths of
- * other kinds. */
+ * cells may stand for all axes, and of a solid one grading is that of the first axis. Shapes have
+ * lengths of other kinds. */
 static bool has_all_axes(dvi_scene *scene, const dvi__tree *section, const char *generator)
 {
   static const char *const grid[] = {"box", "kuhn", "kuhn-torus", "staggered", "bcc-torus"},
@@ -65,7 +65,8 @@ static bool has_all_axes(dvi_scene *scene, const dvi__tree *section, const char 
   for (size_t k = 0; k < sizeof list / sizeof *list && is_grid; k++) {
     const dvi__tree *tree = dvi__tree_find(section, list[k]);
     const int count = tree == NULL ? axes : tree->kind == DVI__SEQUENCE ? tree->count : 1;
-    const bool is_first = tree != NULL && tree->kind == DVI__SCALAR && list[k] == list[2];
+    const bool is_first = dvi__is_elastic(scene) && tree != NULL && tree->kind == DVI__SCALAR &&
+                          list[k] == list[2];
     if (count < axes && !is_first)
       return dvi__scene_refuse(scene, tree->span,
                                "%s has a number for each axis of a mesh, and this one has %d axes, "
