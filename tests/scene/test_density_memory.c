@@ -1,6 +1,6 @@
 /* labels: invariant */
-/* Wherever memory runs out while a scene of fields with a density, or of a solid, is read or its system is made,
- * that is said, nothing leaks, and with memory the same call succeeds. */
+/* Wherever memory runs out while a scene of fields with a density, or of a solid, is read or its
+ * system is made, that is said, nothing leaks, and with memory the same call succeeds. */
 #include <dvi/scene.h>
 #include <string.h>
 
