@@ -69,6 +69,46 @@ END
 expect 0 'a fall' run drop.yaml --final
 says out '^0.2[^,]*,[1-9]' 'hits'
 
+# Of parts that lie in each other the last material counts, for gravity, too: masses 3/2 and 1/2.
+cat >two.msh <<END
+\$MeshFormat
+2.2 0 8
+\$EndMeshFormat
+\$PhysicalNames
+2
+2 1 "core"
+2 2 "rim"
+\$EndPhysicalNames
+\$Nodes
+4
+1 0 0 0
+2 1 0 0
+3 1 1 0
+4 0 1 0
+\$EndNodes
+\$Elements
+2
+1 2 2 1 1 1 2 3
+2 2 2 2 1 1 3 4
+\$EndElements
+END
+cat >two.yaml <<END
+mesh: {file: two.msh}
+field: elastic
+materials: {all: {law: svk, lambda: 1, mu: 1}, core: {law: linear, young: 1, poisson: 0, rho: 3}}
+initial: {u: [0, 2]}
+loads: {gravity: [0, -1]}
+probes: {of_core: {of: load, part: core}, of_all: {of: load}}
+method: verlet
+step: {fraction: 0.5}
+until: 0.1
+END
+expect 0 'two materials' run two.yaml --columns of_core,of_all
+says out '^0,3,4$' 'their weights'
+sed 's/all: {law: svk, lambda: 1, mu: 1}, //' two.yaml >part.yaml
+expect 2 'a cell without a material' run part.yaml
+says err '^dvi: part.yaml:3:12: .*triangle .* has no material' 'the cell'
+
 # What there is not is refused.
 expect 2 'another march' run block.yaml --method leapfrog
 says err 'solids have avi and verlet' 'which marches there are'
