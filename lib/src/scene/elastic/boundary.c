@@ -263,21 +263,17 @@ static bool read_ball(dvi_scene *scene, const dvi__tree *tree, dvi_obstacle *o)
          dvi__solid_number(scene, radius, "radius", false, &o->radius);
 }
 
-static bool read_obstacle(dvi_scene *scene, const dvi__tree *key, const dvi__tree *tree,
-                          dvi_obstacle *o)
+static const char *const obstacle_key[] = {"plane", "ball", "hollow", "restitution", "friction"};
+enum { SHAPES = 3, OBSTACLE_KEYS = 5 };
+
+static bool read_shape(dvi_scene *scene, const dvi__tree *tree, dvi_obstacle *o)
 {
-  static const char *const known[] = {"plane", "ball", "hollow", "restitution", "friction"};
-  static const dvi_obstacle_kind kind[] = {DVI_OBSTACLE_PLANE, DVI_OBSTACLE_BALL,
-                                           DVI_OBSTACLE_HOLLOW};
+  static const dvi_obstacle_kind kind[SHAPES] = {DVI_OBSTACLE_PLANE, DVI_OBSTACLE_BALL,
+                                                 DVI_OBSTACLE_HOLLOW};
   const dvi__tree *shape = NULL;
   int shapes = 0;
-  if (!dvi__want_name(scene, key->text, key->span) ||
-      !dvi__want_mapping(scene, tree, "an obstacle") ||
-      !dvi__want_keys(scene, tree, "an obstacle", 5, known))
-    return false;
-  *o = (dvi_obstacle){.name = key->text};
-  for (int k = 0; k < 3; k++) {
-    const dvi__tree *found = dvi__tree_find(tree, known[k]);
+  for (int k = 0; k < SHAPES; k++) {
+    const dvi__tree *found = dvi__tree_find(tree, obstacle_key[k]);
     if (found == NULL) continue;
     shape = found;
     o->kind = kind[k];
@@ -287,11 +283,21 @@ static bool read_obstacle(dvi_scene *scene, const dvi__tree *key, const dvi__tre
     return dvi__scene_refuse(scene, tree->span,
                              "an obstacle is a plane, a ball, or the hollow of one, as in '{ball: "
                              "{centre: [0, 0, -2], radius: 1}, restitution: 0.5}'");
+  return dvi__want_mapping(scene, shape, "the shape of an obstacle") &&
+         (o->kind == DVI_OBSTACLE_PLANE ? read_plane : read_ball)(scene, shape, o);
+}
+
+static bool read_obstacle(dvi_scene *scene, const dvi__tree *key, const dvi__tree *tree,
+                          dvi_obstacle *o)
+{
+  *o = (dvi_obstacle){.name = key->text};
+  if (!dvi__want_name(scene, key->text, key->span) ||
+      !dvi__want_mapping(scene, tree, "an obstacle") ||
+      !dvi__want_keys(scene, tree, "an obstacle", OBSTACLE_KEYS, obstacle_key) ||
+      !read_shape(scene, tree, o))
+    return false;
   const dvi__tree *restitution = dvi__tree_find(tree, "restitution"),
                   *friction = dvi__tree_find(tree, "friction");
-  if (!dvi__want_mapping(scene, shape, "the shape of an obstacle") ||
-      !(o->kind == DVI_OBSTACLE_PLANE ? read_plane : read_ball)(scene, shape, o))
-    return false;
   if (restitution == NULL)
     return dvi__scene_refuse(scene, tree->span, "an obstacle needs 'restitution', from 0 to 1");
   if (!dvi__solid_number(scene, restitution, "restitution", true, &o->restitution) ||
