@@ -188,8 +188,8 @@ void dvi_scene_density_explain(const dvi_scene *scene, char *text, size_t size);
 int dvi_scene_solve_options(const dvi_scene *scene, dvi_field_solve_options *options);
 
 /** Tell if a method is one of marches, for a scene of a field: those of dvi/march.h and yee, of a
- *  solid those of dvi/elastic.h, and for a density multisymplectic (dvi/multisymplectic.h) and, with
- *  the section schroedinger, those of dvi/schroedinger.h.
+ *  solid those of dvi/elastic.h, and for a density multisymplectic (dvi/multisymplectic.h) and,
+ *  with the section schroedinger, those of dvi/schroedinger.h.
  *
  *  @param method  its specification. NULL for the scene's own
  *  @return 1 if it is, 0 if it is not, or for a scene without a field */
@@ -224,7 +224,8 @@ const char *dvi_scene_march_refused(const dvi_scene *scene, const char *method,
 int dvi_scene_march_order(const dvi_scene *scene, const char *method);
 
 /** Measure the laws of a march of the scene's field that begins at random: dvi_field_laws,
- *  dvi_elastic_laws, dvi_multisymplectic_laws, or the change of the "norm", from 1, of Schroedinger's equation.
+ *  dvi_elastic_laws, dvi_multisymplectic_laws, or the change of the "norm", from 1, of
+ *  Schroedinger's equation.
  *
  *  @param      options  with a method
  *  @param[out] law      [DVI_LAWS_MAX]
