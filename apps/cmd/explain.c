@@ -8,6 +8,7 @@
 #include "cli/command.h"
 #include "csv/events.h"
 #include "load/density.h"
+#include "load/elastic.h"
 #include "load/open.h"
 #include "load/open_march.h"
 #include "cli/options.h"
@@ -134,6 +135,8 @@ static int explain_march(const problem *scene, const char *method, double h)
     (void)printf("steps of %g, beyond the bound %.3g of the start's density: noise may grow\n",
                  facts.step, facts.bound);
   scene_tell(scene);
+  if (elastic_of(scene) != NULL && strncmp(method, "avi", 3) == 0 && isnan(h))
+    elastic_tell_cost(scene, method, dvi_scene_plan_of(scene->scene)->fraction);
   dvi_march_destroy(&march);
   return DONE;
 }

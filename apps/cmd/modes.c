@@ -10,7 +10,9 @@
 #include "cli/outputs.h"
 #include "csv/table.h"
 #include "load/density.h"
+#include "load/elastic.h"
 #include "load/field.h"
+#include "load/open.h"
 
 /* The options. */
 typedef struct modes_request {
@@ -65,6 +67,33 @@ static int find_modes(const modes_request *r, const problem *scene, const dvi_fi
   if (status == DVI_BAD_SIZE) code = USAGE; /* more modes than the field has */
   if (code == DONE && r->vtu != NULL)
     code = field_write(field, r->vtu, "mode", (int)r->count, mode);
+  free(eigenvalue);
+  return code;
+}
+
+/* The modes of small vibrations of a solid about rest. */
+static int find_vibrations(const modes_request *r, const problem *scene)
+{
+  const dvi_elastic *solid = elastic_of(scene);
+  const dvi_mesh *mesh = dvi_elastic_mesh(solid);
+  const size_t numbers = (size_t)dvi_mesh_count(mesh, 0) * (size_t)dvi_mesh_dimension(mesh);
+  const dvi_modes_options options = {
+      .size = sizeof options, .count = (int)r->count, .shift = isnan(r->near) ? 0.0 : r->near};
+  int64_t zeros = 0, unknowns = 0;
+  double *eigenvalue = calloc((size_t)r->count * (1 + numbers), sizeof *eigenvalue);
+  if (eigenvalue == NULL) {
+    complain("out of memory");
+    return FAILED;
+  }
+  double *mode = eigenvalue + r->count;
+  const dvi_status status = dvi_elastic_modes(solid, &options, eigenvalue,
+                                              r->vtu != NULL ? mode : NULL, &zeros);
+  (void)dvi_elastic_unknowns(solid, &unknowns);
+  int code = status == DVI_OK ? print_modes(r, scene, eigenvalue, unknowns, zeros)
+                              : library_error(status);
+  if (status == DVI_BAD_SIZE) code = USAGE; /* more modes than the solid has */
+  if (code == DONE && r->vtu != NULL)
+    code = elastic_write_modes(scene, r->vtu, (int)r->count, mode);
   free(eigenvalue);
   return code;
 }
@@ -186,6 +215,8 @@ static const char *const details[] = {
     "shapes are E. The static fields are counted and left out, absorbing walls count as pmc, and "
     "sigma as 0. Damped modes, and those of a grid that only yee advances, are found by dvi "
     "spectrum in the columns of a run.\n",
+    "The modes of a solid ('field: elastic') are small vibrations about rest. Motions of the whole "
+    "solid are counted and left out, and damping, loads and obstacles take no part.\n",
     "The modes of fields with a density (section 'density') are those of small motions about 0, or "
     "with --static about the static state near the scene's start. All parts of the density count. "
     "With one-forms the eigenvalues are the lambda of H x = lambda N x with the Hessians of the "
@@ -245,7 +276,7 @@ int modes_command(int argc, char **argv)
 {
   modes_request r = {.count = 6, .near = (double)NAN};
   const char *name;
-  const dvi_field *field;
+  const dvi_field *field = NULL; /* of a solid */
   const dvi_density *density = NULL;
   problem *scene;
   int code;
@@ -254,12 +285,16 @@ int modes_command(int argc, char **argv)
   if (r.count > 100000) return usage_error("modes: --count %ld: 100000 at most", r.count);
   code = outputs_distinct("modes", 3, files);
   if (code != DONE) return code;
-  code = field_open("modes", name, &r.settings, &scene, &field, &density);
+  code = open_any(name, &r.settings, &scene);
+  if (code == DONE && elastic_of(scene) == NULL)
+    code = field_choose("modes", name, &scene, &field, &density);
   if (code != DONE) return code;
   if (density == NULL && (r.at_static_state || r.shapes != NULL))
     code = usage_error("modes: --static and --shapes are for fields with a density");
   else
-    code = density != NULL ? find_spectrum(&r, scene, density) : find_modes(&r, scene, field);
+    code = density != NULL ? find_spectrum(&r, scene, density)
+           : field != NULL ? find_modes(&r, scene, field)
+                           : find_vibrations(&r, scene);
   problem_destroy(&scene);
   return code;
 }

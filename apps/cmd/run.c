@@ -311,7 +311,9 @@ static const char *const details[] = {
     "Fields, of waves and Maxwell's ('field: maxwell'), are advanced by the marches leapfrog, yee, "
     "avi and tents, too, whose columns are\n"
     "energy and the probes. gauss, charge, divergence and growth are shown if --columns names "
-    "them. --pvd writes E and B in the cells, or u.\n",
+    "them. --pvd writes E and B in the cells, or u.\n"
+    "Solids ('field: elastic') have the marches avi and verlet, and --pvd writes their nodes where "
+    "they are, with velocities and stresses.\n",
     "What no column shows is not evaluated for the rows. The energy of a system that does not "
     "depend on time is looked at all the\n"
     "same, in the first 32 steps, in every 61st later on, and at the end; an error above 1 % of "

@@ -7,7 +7,9 @@
 #include "cli/command.h"
 #include "cli/options.h"
 #include "csv/table.h"
+#include "load/elastic.h"
 #include "load/field.h"
+#include "load/open.h"
 
 /* The options. */
 typedef struct stability_request {
@@ -26,8 +28,10 @@ static int examine(const stability_request *r, const problem *scene, const dvi_f
                                      .fraction = !isnan(r->fraction) ? r->fraction
                                                                      : plan->fraction};
   dvi_stability report;
-  const dvi_status status = dvi_field_stability(field, &options, isnan(r->span) ? 0 : r->span,
-                                                &report);
+  const double span = isnan(r->span) ? 0 : r->span;
+  const dvi_status status = field != NULL
+                                ? dvi_field_stability(field, &options, span, &report)
+                                : dvi_elastic_stability(elastic_of(scene), &options, span, &report);
   if (status != DVI_OK) return library_error(status);
   table_text(rows, method);
   table_text(rows, report.schedule);
@@ -68,7 +72,7 @@ static const char *const details[] = {
     "all steps, with all of its modes; of a large field, and of steps without a common period, as "
     "most tents are, the fields that grow\n"
     "fastest are searched, and the resolution says which growth the search can have missed. Losses "
-    "are counted, and sources left out.\n"
+    "are counted, and sources left out. Of a solid these are small vibrations about rest.\n"
     "The exit code is 0 for growth, too.\n",
     "Columns of --csv: method, schedule, period, growth, rate, resolution, result.\n",
     "Examples:\n"
@@ -82,7 +86,8 @@ static const option command_options[] = {
     {.name = "method",
      OPTION_AT(stability_request, methods),
      .value = "SPEC",
-     .help = "avi, avi:classes=no or tents; may be repeated; default: the scene's, or avi"},
+     .help = "avi, avi:classes=no, tents, or verlet of a solid; may be repeated; default: the "
+             "scene's, or avi"},
     {.name = "fraction",
      OPTION_AT(stability_request, fraction),
      .value = "F",
@@ -116,7 +121,7 @@ int stability_command(int argc, char **argv)
 {
   stability_request r = {.fraction = (double)NAN, .span = (double)NAN};
   const char *name;
-  const dvi_field *field;
+  const dvi_field *field = NULL; /* of a solid */
   problem *scene;
   int code;
   if (!options_parse(&command, argc, argv, &r, &name, &code)) return code;
@@ -124,7 +129,9 @@ int stability_command(int argc, char **argv)
     return usage_error("stability: --fraction %g: above 0 and below 1 are possible", r.fraction);
   if (!isnan(r.span) && !(r.span > 0))
     return usage_error("stability: --span %g: a time above 0 is wanted", r.span);
-  code = field_open("stability", name, &r.settings, &scene, &field, NULL);
+  code = open_any(name, &r.settings, &scene);
+  if (code == DONE && elastic_of(scene) == NULL)
+    code = field_choose("stability", name, &scene, &field, NULL);
   if (code != DONE) return code;
   code = examine_all(&r, scene, field);
   problem_destroy(&scene);

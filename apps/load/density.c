@@ -9,6 +9,7 @@
 
 #include "cli/command.h"
 #include "csv/table.h"
+#include "load/elastic.h"
 #include "load/quantity.h"
 
 enum { TEXT_SIZE = 4096, NAME_SIZE = QUANTITY_NAME + 24 };
@@ -20,7 +21,8 @@ const dvi_density *density_of(const problem *scene)
 
 bool has_field(const problem *scene)
 {
-  return density_of(scene) != NULL || dvi_scene_field(scene->scene) != NULL;
+  return density_of(scene) != NULL || dvi_scene_field(scene->scene) != NULL ||
+         elastic_of(scene) != NULL;
 }
 
 /* Of the domains with axes only those of rotations have neither a space nor a moving mesh. */
@@ -99,6 +101,8 @@ int64_t field_unknowns(const problem *scene)
   int64_t unknowns = 0;
   if (density_of(scene) != NULL)
     (void)dvi_density_unknowns(density_of(scene), &unknowns);
+  else if (elastic_of(scene) != NULL)
+    (void)dvi_elastic_unknowns(elastic_of(scene), &unknowns);
   else
     (void)dvi_field_unknowns(dvi_scene_field(scene->scene), &unknowns);
   return unknowns;

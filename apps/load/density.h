@@ -9,7 +9,7 @@
 /** Return the density of a problem's scene, or NULL. */
 const dvi_density *density_of(const problem *scene);
 
-/** Return whether a problem is a field, with a density or on a mesh alone. */
+/** Return whether a problem is a field, with a density, on a mesh alone, or of a solid. */
 bool has_field(const problem *scene);
 
 /** Return whether a problem is a field of rotations. */

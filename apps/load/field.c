@@ -6,6 +6,7 @@
 
 #include "cli/command.h"
 #include "load/density.h"
+#include "load/elastic.h"
 #include "load/open.h"
 
 enum { NAME_SIZE = 32 };
@@ -30,12 +31,23 @@ static int refuse_moving(const char *command, problem **scene)
   return code;
 }
 
+/* Refuse a solid, of which a command knows nothing. */
+static int refuse_solid(const char *command, problem **scene)
+{
+  const int code = usage_error("%s: not for solids, as that of %s; a run whose materials have an "
+                               "'alpha' comes to rest",
+                               command, (*scene)->name);
+  problem_destroy(scene);
+  return code;
+}
+
 int field_choose(const char *command, const char *name, problem **scene, const dvi_field **field,
                  const dvi_density **density)
 {
   if (dvi_scene_grid_only((*scene)->scene) != NULL) return refuse_grid(scene, false);
   *field = dvi_scene_field((*scene)->scene);
   if (*field != NULL || (density != NULL && (*density = density_of(*scene)) != NULL)) return DONE;
+  if (elastic_of(*scene) != NULL) return refuse_solid(command, scene);
   if (dvi_scene_moving((*scene)->scene) != NULL) return refuse_moving(command, scene);
   if (has_rotations(*scene)) return refuse_rotations(command, scene);
   const bool has_density = density_of(*scene) != NULL;
@@ -47,13 +59,6 @@ int field_choose(const char *command, const char *name, problem **scene, const d
         command, name);
   return usage_error("%s: '%s' has no field; a scene with the sections mesh and field has one",
                      command, name);
-}
-
-int field_open(const char *command, const char *name, const words *settings, problem **scene,
-               const dvi_field **field, const dvi_density **density)
-{
-  const int code = open_any(name, settings, scene);
-  return code == DONE ? field_choose(command, name, scene, field, density) : code;
 }
 
 const dvi_mesh *field_mesh(const dvi_field *field)

@@ -7,13 +7,9 @@
 #include "cli/options.h"
 #include "problem.h"
 
-/** Open a scene with a field, or with a density, which is then set and `field` is NULL. A command
- * without use for densities gives NULL. Returns DONE, or complains that `command` needs a field and
- * returns the exit code. */
-int field_open(const char *command, const char *name, const words *settings, problem **scene,
-               const dvi_field **field, const dvi_density **density);
-
-/** Do the same for a scene that is open. It is destroyed if it is refused. */
+/** Take the field of a scene, or its density, which is then set and `field` is NULL. A command
+ * without use for densities gives NULL. Returns DONE, or complains that `command` needs a field,
+ * destroys the scene and returns the exit code. */
 int field_choose(const char *command, const char *name, problem **scene, const dvi_field **field,
                  const dvi_density **density);
 

@@ -10,6 +10,7 @@
 #include "cli/command.h"
 #include "cli/spelling.h"
 #include "load/density.h"
+#include "load/elastic.h"
 
 enum { MESSAGE_SIZE = 1024, WORD_SIZE = 64, HINT_SIZE = 128 };
 
@@ -192,6 +193,7 @@ int open_shaped(const char *name, const words *settings, bool one_point, problem
 static const char *example_method(const problem *scene)
 {
   if (density_of(scene) != NULL) return scene->terms->one_form != NULL ? "vprk" : "verlet";
+  if (elastic_of(scene) != NULL) return "avi";
   return dvi_scene_field(scene->scene) != NULL ? "leapfrog" : "galerkin:degree=4";
 }
 
@@ -280,24 +282,28 @@ int refuse_march(const problem *scene, const char *method)
   if (!dvi_scene_marches(scene->scene, method)) return DONE;
   return usage_error(
       "%s is a march of a field, for dvi run, check, explain, order, and bench without --scale; "
-      "a mechanical method such as verlet is wanted here",
-      method);
+      "a mechanical method such as %s is wanted here",
+      method, elastic_of(scene) != NULL ? "galerkin:degree=2" : "verlet");
 }
 
 /* Refuse a method, with its place in the scene or on the command line. */
 static int refuse_method(const problem *scene, const char *method)
 {
   char hint[HINT_SIZE], sentence[MESSAGE_SIZE], message[2 * MESSAGE_SIZE];
-  const bool has_field = dvi_scene_field(scene->scene) != NULL;
+  const bool is_solid = elastic_of(scene) != NULL,
+             has_field = is_solid || dvi_scene_field(scene->scene) != NULL;
   if (refuse_march(scene, method) != DONE) return USAGE;
-  hint_at_method(method, has_field ? march_name_at : method_name_at, hint);
+  hint_at_method(method, has_field && !is_solid ? march_name_at : method_name_at, hint);
   const char *error = dvi_last_error(), *list = strstr(error, "; there are galerkin");
   const bool said = strstr(error, "did you mean") != NULL, names = has_field && list != NULL;
   (void)snprintf(sentence, sizeof sentence, "%s: %.*s%s%s", method,
                  names ? (int)(list - error) : (int)strlen(error), error,
-                 names ? "; fields have leapfrog, yee on boxes, bossavit-kettunen, avi and tents, "
-                         "and take mechanical methods, see dvi list methods"
-                       : "",
+                 !names ? ""
+                 : is_solid
+                     ? "; solids have avi and verlet, and take other mechanical methods, see "
+                       "dvi list methods"
+                     : "; fields have leapfrog, yee on boxes, bossavit-kettunen, avi and tents, "
+                       "and take mechanical methods, see dvi list methods",
                  said ? "" : hint);
   if (scene->scene == NULL || method != scene->method) return usage_error("--method %s", sentence);
   dvi_scene_tell(scene->scene, "method", sentence, message, sizeof message);
@@ -307,6 +313,11 @@ static int refuse_method(const problem *scene, const char *method)
 /* Return the exit code for the status of an integrator's creation. */
 static int open_exit_code(dvi_status status, const problem *scene, const char *method)
 {
+  if (status == DVI_UNSUPPORTED && elastic_of(scene) != NULL && method != scene->method &&
+      strstr(dvi_last_error(), "a fast potential") != NULL)
+    return usage_error("--method %s: a solid has a fast part of its energy if the scene says so: "
+                       "write 'method: %s' there",
+                       method, method);
   if (status != DVI_BAD_OPTION) return status == DVI_OK ? DONE : library_error(status);
   return refuse_method(scene, method);
 }

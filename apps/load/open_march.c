@@ -7,6 +7,7 @@
 
 #include "cli/command.h"
 #include "load/density.h"
+#include "load/elastic.h"
 #include "load/field.h"
 #include "load/open.h"
 
@@ -64,12 +65,25 @@ static const subject of_mesh[] = {{"eps =", "materials"},
                                   {"the star", "star"},
                                   {NULL, NULL}};
 
+/* Subjects of sentences on marches of solids. */
+static const subject of_solid[] = {{"steps of", "step"},
+                                   {"obstacle", "obstacles"},
+                                   {"the step", "step"},
+                                   {"a step", "step"},
+                                   {"common step", "step"},
+                                   {"fraction", "step"},
+                                   {" option", "method"},
+                                   {"no method", "method"},
+                                   {"inverted", "initial"},
+                                   {"displacement", "boundary"},
+                                   {NULL, NULL}};
+
 /* Return the section of the scene that a sentence of the library is about, or NULL. A step and a
  * method that the options have are not the scene's. */
-static const char *section_of(const char *sentence, bool is_density,
+static const char *section_of(const char *sentence, const subject *at,
                               const dvi_march_options *options)
 {
-  for (const subject *at = is_density ? of_density : of_mesh; at->word != NULL; at++) {
+  for (; at->word != NULL; at++) {
     if (strstr(sentence, at->word) == NULL) continue;
     const bool is_step = strcmp(at->section, "step") == 0,
                is_method = strcmp(at->section, "method") == 0;
@@ -92,8 +106,10 @@ static bool is_yee_on_mesh(const problem *scene, const char *method)
 static int refuse(dvi_status status, const problem *scene, const dvi_march_options *options)
 {
   char message[MESSAGE_SIZE] = "";
-  const bool is_density = density_of(scene) != NULL;
-  const char *sentence = dvi_last_error(), *section = section_of(sentence, is_density, options);
+  const subject *subjects = density_of(scene) != NULL   ? of_density
+                            : elastic_of(scene) != NULL ? of_solid
+                                                        : of_mesh;
+  const char *sentence = dvi_last_error(), *section = section_of(sentence, subjects, options);
   const char *method = options->method != NULL ? options->method : scene->method;
   const char *reason = dvi_scene_march_refused(scene->scene, method, &section);
   if (reason != NULL) {

@@ -2,6 +2,7 @@
 #include "load/scene.h"
 
 #include "load/density.h"
+#include "load/elastic.h"
 #include "load/field.h"
 
 #include <dvi/scene.h>
@@ -276,6 +277,11 @@ void scene_tell(const problem *scene)
   if (dvi_scene_component(scene->scene, 0) != NULL) {
     (void)printf("\n");
     density_tell(scene);
+    return;
+  }
+  if (elastic_of(scene) != NULL) {
+    (void)printf("\n");
+    elastic_tell(scene);
     return;
   }
   if (dvi_scene_field(scene->scene) != NULL) {

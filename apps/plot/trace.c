@@ -71,7 +71,8 @@ static bool shows_balance(const run_columns *c, int invariant)
 static bool is_probe(const run_columns *c, const shown_column *column)
 {
   const dvi_scene *scene = c->scene->scene;
-  return (dvi_scene_field(scene) != NULL || dvi_scene_density(scene) != NULL) &&
+  return (dvi_scene_field(scene) != NULL || dvi_scene_density(scene) != NULL ||
+          dvi_scene_elastic(scene) != NULL) &&
          column->kind == COLUMN_INVARIANT && column->index > c->scene->terms->symmetry_count;
 }
 

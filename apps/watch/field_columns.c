@@ -64,8 +64,9 @@ static const char *name_at(int k, const void *list)
  * parts of the energy. */
 static bool is_usual(const char *name)
 {
-  static const char *const on_demand[] = {"gauss",   "charge",    "divergence",
-                                          "kinetic", "potential", "interaction"};
+  static const char *const on_demand[] = {"gauss",     "charge",      "divergence", "kinetic",
+                                          "potential", "interaction", "stored",     "load",
+                                          "growth",    "hits"};
   for (size_t k = 0; k < sizeof on_demand / sizeof *on_demand; k++)
     if (strcmp(name, on_demand[k]) == 0) return false;
   return true;
@@ -78,9 +79,12 @@ static void choose_usual(field_columns *c)
     if (is_usual(name)) c->column[c->count++] = c->all[i];
 }
 
-/* Momenta of a wave are those of mechanical methods, which the scene wants without being told. */
-static bool is_momentum(const problem *scene, const char *name)
+/* Momenta of a wave are those of mechanical methods, which the scene wants without being told.
+ * Marches of solids observe theirs. */
+static bool is_momentum(const field_columns *c, const char *name)
 {
+  const problem *scene = c->scene;
+  if (is_among(c, c->there, name)) return false;
   for (int i = 0; i < scene->terms->symmetry_count; i++)
     if (strcmp(scene->terms->symmetries[i].name, name) == 0) return true;
   return false;
@@ -98,8 +102,7 @@ static int choose_named(field_columns *c, const char *asked)
                           .place = c->place};
   int code = asked != NULL ? choice_add_all(&choice, asked) : DONE;
   for (int i = 0; i < c->scene->column_count && asked == NULL && code == DONE; i++)
-    if (!is_momentum(c->scene, c->scene->column[i]))
-      code = choice_add(&choice, c->scene->column[i]);
+    if (!is_momentum(c, c->scene->column[i])) code = choice_add(&choice, c->scene->column[i]);
   for (int i = 0; i < choice.count; i++) c->column[c->count++] = c->all[c->place[i]];
   return code;
 }

@@ -6,6 +6,7 @@
 
 #include "cli/command.h"
 #include "load/density.h"
+#include "load/elastic.h"
 #include "load/field.h"
 
 static int out_of_memory(void)
@@ -150,6 +151,7 @@ int field_map_start(field_map *m, const problem *scene, const char *path, const 
   if (density != NULL) return start_density(m, density, name);
   if (m->moving != NULL) return start_moving(m, name);
   if (field != NULL) return start_wave(m, field, name);
+  if (elastic_of(scene) != NULL) return refuse(scene, "is a solid");
   if (has_rotations(scene))
     return usage_error("run: --map is not for fields of rotations, as that of %s; --plot draws its "
                        "columns over time",

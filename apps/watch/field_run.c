@@ -10,6 +10,7 @@
 #include "cli/progress.h"
 #include "cli/signals.h"
 #include "load/density.h"
+#include "load/elastic.h"
 #include "load/open_march.h"
 #include "watch/field_columns.h"
 #include "watch/field_map.h"
@@ -54,12 +55,12 @@ static int refuse_options(const run_request *r)
               {r->how.control != NULL, "step-control"}};
   if (r->verify)
     return usage_error(
-        "run: --verify is for mechanical methods such as verlet; compare the rows of "
+        "run: --verify is for mechanical methods such as midpoint; compare the rows of "
         "%s, a march of a field, with those of --h at half the step",
         r->method);
   for (size_t i = 0; i < sizeof list / sizeof *list; i++)
     if (list[i].given)
-      return usage_error("run: --%s is for mechanical methods such as verlet; %s is a march of a "
+      return usage_error("run: --%s is for mechanical methods such as midpoint; %s is a march of a "
                          "field",
                          list[i].name, r->method);
   if (!isnan(r->h) && !(r->h > 0))
@@ -147,12 +148,30 @@ static bool write_components(journey *j)
          frames_add(&j->frames, t, j->views.count, j->views.view);
 }
 
+/* Write a solid, with the nodes where they are. */
+static bool write_solid(journey *j)
+{
+  const int64_t numbers = dvi_march_size(j->march, DVI_FORM_A);
+  double *u = j->vector, *velocity = u + numbers;
+  elastic_views now = {.count = 0};
+  dvi_status status = dvi_march_sample(j->march, DVI_FORM_A, 0, NULL, u);
+  if (status == DVI_OK) status = dvi_march_sample(j->march, DVI_FORM_E, 0, NULL, velocity);
+  if (status != DVI_OK) return library_error(status) == DONE;
+  for (int64_t i = 0; i < numbers; i++) velocity[i] = -velocity[i];
+  bool good = elastic_views_make(j->scene, u, velocity, &now) == DONE;
+  j->frames.mesh = now.mesh;
+  good = good && frames_add(&j->frames, dvi_march_time(j->march), now.count, now.view);
+  elastic_views_clear(&now);
+  return good;
+}
+
 /* Write the fields at the time of a row: E and B in the cells, or u of a wave at the vertices. */
 static bool write_frame(journey *j)
 {
   const dvi_scene *scene = j->scene->scene;
   if (!frames_are_wanted(&j->frames)) return true;
   if (density_of(j->scene) != NULL) return write_components(j);
+  if (elastic_of(j->scene) != NULL) return write_solid(j);
   const int n = dvi_mesh_dimension(j->frames.mesh);
   double *E = j->vector, *B = E + 3 * (size_t)dvi_mesh_count(j->frames.mesh, n);
   const dvi_view vectors[] = {{"E", E, 3, n}, {"B", B, 3, n}}, value = {"u", j->vector, 1, 0};
@@ -260,7 +279,7 @@ static int start_frames(journey *j)
   const int n = dvi_mesh_dimension(mesh);
   const int64_t cells = dvi_mesh_count(mesh, n), vertices = dvi_mesh_count(mesh, 0),
                 numbers = density != NULL ? density_coefficients(density) + field_unknowns(j->scene)
-                                          : 6 * cells + vertices;
+                                          : 6 * cells + 2 * n * vertices;
   j->vector = calloc((size_t)numbers, sizeof *j->vector);
   if (j->vector != NULL && density != NULL) return density_views_make(j->scene, 1, &j->views);
   if (j->vector != NULL) return DONE;

@@ -15,6 +15,7 @@
 #include "csv/events.h"
 #include "cli/file.h"
 #include "load/density.h"
+#include "load/elastic.h"
 #include "load/field.h"
 #include "load/moving.h"
 #include "watch/field_map.h"
@@ -77,6 +78,19 @@ static bool recorder_write_nodes(recorder *r, const dvi_integrator *integrator)
   return good;
 }
 
+/* Write a solid, with the nodes where they are. */
+static bool recorder_write_solid(recorder *r, const dvi_integrator *integrator)
+{
+  const double t = dvi_integrator_time(integrator);
+  elastic_views now;
+  bool good = elastic_views_of_state(r->scene, t, dvi_integrator_q(integrator),
+                                     dvi_integrator_p(integrator), &now) == DONE;
+  r->frames.mesh = now.mesh;
+  good = good && frames_add(&r->frames, t, now.count, now.view);
+  elastic_views_clear(&now);
+  return good;
+}
+
 /* Write the field of a state, in its cells if it is Maxwell's. */
 static bool recorder_write_frame(recorder *r, const dvi_integrator *integrator)
 {
@@ -84,6 +98,7 @@ static bool recorder_write_frame(recorder *r, const dvi_integrator *integrator)
   if (!frames_are_wanted(&r->frames)) return true;
   if (density_of(r->scene) != NULL) return recorder_write_components(r, integrator);
   if (dvi_scene_moving(r->scene->scene) != NULL) return recorder_write_nodes(r, integrator);
+  if (elastic_of(r->scene) != NULL) return recorder_write_solid(r, integrator);
   field_view view;
   (void)dvi_field_lift(r->field, dvi_integrator_q(integrator), r->form);
   const bool good = field_view_make(r->field, dvi_field_degree(r->field) == 0 ? "u" : "A", r->form,
@@ -296,7 +311,8 @@ static int recorder_start_frames(recorder *r)
   r->field = dvi_scene_field(r->scene->scene);
   const dvi_mesh *mesh = dvi_scene_mesh(r->scene->scene);
   const int code = frames_start(&r->frames, r->scene->name, mesh, r->request->pvd);
-  if (code != DONE || dvi_scene_moving(r->scene->scene) != NULL) return code;
+  if (code != DONE || dvi_scene_moving(r->scene->scene) != NULL || elastic_of(r->scene) != NULL)
+    return code;
   const int64_t numbers = density != NULL ? density_coefficients(density)
                                           : dvi_mesh_count(mesh, dvi_field_degree(r->field));
   r->form = calloc((size_t)numbers, sizeof *r->form);

@@ -78,8 +78,9 @@ BEGIN {
   sees["scene/terms"] = sees["scene/elaborate"] " scene/elaborate"
   sees["scene/sections"] = sees["scene/terms"] " scene/terms"
   sees["scene/field"] = sees["scene/sections"] " scene/sections"
+  sees["scene/elastic"] = sees["scene/field"] " scene/field"
   sees["scene/density"] = sees["scene/sections"] " scene/sections"
-  sees["scene"] = sees["scene/field"] " scene/field scene/density"
+  sees["scene"] = sees["scene/field"] " scene/field scene/elastic scene/density"
   sees["scene/emit"] = sees["scene"] " scene"
   # The command includes public headers and those of the problems, too.
   uses["cli"] = ""

@@ -1,6 +1,6 @@
 /* labels: invariant */
-/* Wherever memory runs out while a scene of fields with a density is read or its system is made,
- * that is said, nothing leaks, and with memory the same call succeeds. */
+/* Wherever memory runs out while a scene of fields with a density, or of a solid, is read or its
+ * system is made, that is said, nothing leaks, and with memory the same call succeeds. */
 #include <dvi/scene.h>
 #include <string.h>
 
@@ -19,7 +19,15 @@ static const char *const texts[] = {
     "domain: {x: [0, 1]}\nspace: fourier:modes=2\nboundary: periodic\n"
     "schroedinger: {potential: cos(2*pi*x), interaction: 2}\ninitial: {psi: '[1, x]'}\n",
     "mesh: {generator: disk, cells: 1}\nfields: {u: scalar}\n"
-    "density: (1 + u^2)*u'^2/2 - dot(grad(u), grad(u))/2\nboundary: {rim: {fixed: x}}\n"};
+    "density: (1 + u^2)*u'^2/2 - dot(grad(u), grad(u))/2\nboundary: {rim: {fixed: x}}\n",
+    "parameters: {m: 1}\nmesh: {generator: kuhn, cells: [1, 1, 1]}\nfield: elastic\n"
+    "definitions: {push: '[0, t, 0]'}\n"
+    "materials: {all: {law: 'm*(I1 - 3)/2 - m*log(J)', alpha: 0.1}}\n"
+    "boundary: {left: {fixed: push}, bottom: {fixed: {x: 0}}}\ninitial: {u': [y, 0, 0]}\n"
+    "loads: {gravity: [0, 0, -1], right: {traction: -t*normal}}\n"
+    "obstacles: {floor: {plane: {point: [0, 0, -1], normal: [0, 0, 1]}, restitution: 1}}\n"
+    "probes: {a: {of: x, at: [0.5, 0.5, 0.4]}, s: {of: stress, at: [0.5, 0.5, 0.4]}}\n"
+    "step: {fraction: 0.5}\nuntil: 1\nreport: {columns: [energy, a_x]}\n"};
 
 enum { TEXTS = sizeof texts / sizeof *texts, MESSAGE_SIZE = 512, MOST = 20000 };
 

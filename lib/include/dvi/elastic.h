@@ -182,6 +182,13 @@ dvi_status dvi_elastic_energy(const dvi_elastic *elastic, double t, const double
  *  @retval (others)  as dvi_elastic_energy */
 dvi_status dvi_elastic_stress(const dvi_elastic *elastic, const double *u, double *stress);
 
+/** Give von Mises' stress sqrt(3/2 s:s) of each n-cell, [cells], with the deviator s of Cauchy's
+ *  stress. In a plane the stress across it, by which the strain is plane, is one of them.
+ *
+ *  @retval DVI_UNSUPPORTED  in a plane a stored energy that is given does not tell that stress
+ *  @retval (others)         as dvi_elastic_energy */
+dvi_status dvi_elastic_von_mises(const dvi_elastic *elastic, const double *u, double *stress);
+
 /** Bound the largest angular frequency at rest from above, within 0.1 percent. verlet is stable
  *  with steps below 2/omega near rest.
  *

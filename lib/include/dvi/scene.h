@@ -6,6 +6,7 @@
 #define DVI_SCENE_H
 #include <dvi/control.h>
 #include <dvi/density.h>
+#include <dvi/elastic.h>
 #include <dvi/field.h>
 #include <dvi/march.h>
 #include <dvi/moving.h>
@@ -142,8 +143,12 @@ const dvi_system *dvi_scene_system(const dvi_scene *scene);
 const dvi_system_terms *dvi_scene_terms(const dvi_scene *scene);
 
 /** Return the field of a scene with a mesh, whose unknowns are the coordinates u_1, u_2 and so on.
- *  Owned by the scene. NULL if the scene has no mesh. */
+ *  Owned by the scene. NULL if the scene has no mesh, or a solid on it. */
 const dvi_field *dvi_scene_field(const dvi_scene *scene);
+
+/** Return the solid of a scene with `field: elastic`, whose unknowns are the coordinates u_1, u_2
+ *  and so on. Owned by the scene. NULL for other scenes. */
+const dvi_elastic *dvi_scene_elastic(const dvi_scene *scene);
 
 /** Return the field of a scene with a density, owned by the scene. Its coordinates are named u_1,
  *  u_2 and so on by its fields. NULL if the scene has no density, or one on a mesh that moves. */
@@ -182,9 +187,9 @@ void dvi_scene_density_explain(const dvi_scene *scene, char *text, size_t size);
 /** Give the options of dvi_field_solve that the scene sets. Returns 0 if it has no field. */
 int dvi_scene_solve_options(const dvi_scene *scene, dvi_field_solve_options *options);
 
-/** Tell if a method is one of marches, for a scene of a field: those of dvi/march.h and yee, and
- *  for a density multisymplectic (dvi/multisymplectic.h) and, with the section schroedinger, those
- *  of dvi/schroedinger.h.
+/** Tell if a method is one of marches, for a scene of a field: those of dvi/march.h and yee, of a
+ *  solid those of dvi/elastic.h, and for a density multisymplectic (dvi/multisymplectic.h) and,
+ *  with the section schroedinger, those of dvi/schroedinger.h.
  *
  *  @param method  its specification. NULL for the scene's own
  *  @return 1 if it is, 0 if it is not, or for a scene without a field */
@@ -201,7 +206,8 @@ int dvi_scene_marches(const dvi_scene *scene, const char *method);
  *  @retval DVI_UNSUPPORTED   the scene has no mesh, and the method is not yee; it has a damping; or
  *                            the method is yee, and the star is not circumcentric; or
  *                            dvi_scene_march_refused tells why
- *  @retval (others)          as dvi_march_create, dvi_yee_create and dvi_march_start */
+ *  @retval (others)          as dvi_march_create, dvi_elastic_march_create, dvi_yee_create and
+ *                            dvi_march_start */
 dvi_status dvi_scene_march_create(const dvi_scene *scene, const dvi_march_options *options,
                                   dvi_march **march);
 
@@ -218,7 +224,8 @@ const char *dvi_scene_march_refused(const dvi_scene *scene, const char *method,
 int dvi_scene_march_order(const dvi_scene *scene, const char *method);
 
 /** Measure the laws of a march of the scene's field that begins at random: dvi_field_laws,
- *  dvi_multisymplectic_laws, or the change of the "norm", from 1, of Schroedinger's equation.
+ *  dvi_elastic_laws, dvi_multisymplectic_laws, or the change of the "norm", from 1, of
+ *  Schroedinger's equation.
  *
  *  @param      options  with a method
  *  @param[out] law      [DVI_LAWS_MAX]

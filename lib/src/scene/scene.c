@@ -29,7 +29,7 @@ static int term_has_time(const dvi__scene_term *term)
 /* Find if any function has the time. An autonomous system has no rates. */
 static void find_time(dvi_scene *scene)
 {
-  if (scene->density != NULL) return; /* whose own terms say so */
+  if (scene->density != NULL || dvi__is_elastic(scene)) return; /* whose own terms say so */
   int timed = scene->field != NULL && !scene->terms.autonomous;
   for (const dvi__scene_term *term = scene->functions; term != NULL; term = term->next)
     timed = timed || (term->role != DVI__ROLE_AUXILIARY && term_has_time(term));

@@ -1,4 +1,5 @@
 /* Displacements, coordinates, energies and stresses of a solid. */
+#include <math.h>
 #include <string.h>
 
 #include "core/status.h"
@@ -94,7 +95,7 @@ static int find_stress(const dvi_elastic *e, int64_t cell, const double *u, doub
 {
   const int n = e->n;
   const dvi__solid_material *material = e->materials + e->material[cell];
-  double own[DVI__SOLID_NUMBERS], H[DVI__SOLID_ENTRIES], P[DVI__SOLID_ENTRIES];
+  double own[DVI__SOLID_NUMBERS] = {0}, H[DVI__SOLID_ENTRIES], P[DVI__SOLID_ENTRIES];
   dvi__solid_gather(e, cell, u, own);
   dvi__solid_strain(e, cell, own, H);
   const double J = 1 + dvi__trace(n, H) + dvi__higher_volume(n, H);
@@ -119,6 +120,52 @@ dvi_status dvi_elastic_stress(const dvi_elastic *elastic, const double *u, doubl
   for (int64_t c = 0; c < elastic->cells; c++) {
     const int returned = find_stress(elastic, c, u, stress + c * elastic->n * elastic->n);
     if (returned != 0) return dvi__solid_refuse(elastic, c, returned);
+  }
+  return DVI_OK;
+}
+
+/* Cauchy's stress across a plane, in which E_33 = 0 and F_33 = 1. */
+static double stress_across(const dvi__solid_material *m, const double *H)
+{
+  double E[DVI__SOLID_ENTRIES];
+  const double growth = dvi__trace(2, H) + dvi__higher_volume(2, H);
+  if (m->law == DVI_ELASTIC_LINEAR) return m->lambda * dvi__trace(2, H);
+  dvi__green_strain(2, H, E);
+  if (m->law == DVI_ELASTIC_SVK) return m->lambda * dvi__trace(2, E) / (1 + growth);
+  return ((m->lambda - 2 * m->mooney) * log1p(growth) + 2 * m->mooney * dvi__trace(2, E)) /
+         (1 + growth);
+}
+
+/* von Mises' stress, of sigma [9] row by row. */
+static double equivalent(const double *sigma)
+{
+  const double x = sigma[0] - sigma[4], y = sigma[4] - sigma[8], z = sigma[8] - sigma[0],
+               shear = sigma[1] * sigma[1] + sigma[2] * sigma[2] + sigma[5] * sigma[5];
+  return sqrt((x * x + y * y + z * z) / 2 + 3 * shear);
+}
+
+dvi_status dvi_elastic_von_mises(const dvi_elastic *elastic, const double *u, double *stress)
+{
+  if (elastic == NULL || u == NULL || stress == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "elastic: a solid, displacements and a place for stresses are needed");
+  for (int64_t c = 0; c < elastic->cells; c++) {
+    double own[DVI__SOLID_NUMBERS] = {0}, H[DVI__SOLID_ENTRIES], sigma[9] = {0};
+    const dvi__solid_material *material = elastic->materials + elastic->material[c];
+    if (elastic->n == 2 && material->law == DVI_ELASTIC_ENERGY)
+      return dvi__fail(DVI_UNSUPPORTED, "elastic: an energy that is given in a plane does not tell "
+                                        "the stress across it, and so not von Mises' stress");
+    const int returned = find_stress(elastic, c, u, sigma);
+    if (returned != 0) return dvi__solid_refuse(elastic, c, returned);
+    if (elastic->n == 2) {
+      dvi__solid_gather(elastic, c, u, own);
+      dvi__solid_strain(elastic, c, own, H);
+      sigma[4] = sigma[3];
+      sigma[3] = sigma[2];
+      sigma[2] = 0;
+      sigma[8] = stress_across(material, H);
+    }
+    stress[c] = equivalent(sigma);
   }
   return DVI_OK;
 }

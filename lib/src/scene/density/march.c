@@ -49,6 +49,7 @@ dvi_status dvi_scene_march_laws(const dvi_scene *scene, const dvi_march_options 
 {
   const char *section;
   if (scene == NULL || options == NULL || law == NULL || count == NULL) return DVI_BAD_ARGUMENT;
+  if (dvi__is_elastic(scene)) return dvi__elastic_laws(scene, options, steps, law, count);
   if (scene->density == NULL)
     return dvi_field_laws(dvi_scene_field(scene), options, steps, law, count);
   if (options->method == NULL || !dvi__density_marches(scene, options->method) ||

@@ -15,7 +15,9 @@ bool dvi__read_star(dvi_scene *scene, const dvi__tree *section)
   static const dvi_star_kind kind[] = {DVI_CIRCUMCENTRIC, DVI_BARYCENTRIC, DVI_WHITNEY,
                                        DVI_SPECTRAL};
   int which;
-  if (!dvi__tree_word(scene, section, "star", 4, word, &which)) return false;
+  if (!dvi__elastic_refuse_section(scene, section, "star") ||
+      !dvi__tree_word(scene, section, "star", 4, word, &which))
+    return false;
   scene->field->kind = kind[which];
   return true;
 }
@@ -108,6 +110,7 @@ static bool read_material(dvi_scene *scene, const dvi__tree *key, const dvi__tre
 /* "all" is read first, so that parts replace it. */
 bool dvi__read_materials(dvi_scene *scene, const dvi__tree *section)
 {
+  if (dvi__is_elastic(scene)) return dvi__elastic_read_materials(scene, section);
   if (scene->field->maxwell != NULL) return dvi__maxwell_read_materials(scene, section);
   if (!dvi__want_mapping(scene, section, "materials")) return false;
   for (int special = 0; special < 2; special++)
@@ -159,6 +162,7 @@ bool dvi__read_boundary(dvi_scene *scene, const dvi__tree *section)
 {
   struct dvi__scene_field *field = scene->field;
   if (scene->density != NULL) return dvi__density_read_boundary(scene, section);
+  if (dvi__is_elastic(scene)) return dvi__elastic_read_boundary(scene, section);
   if (field->maxwell != NULL) return dvi__maxwell_read_walls(scene, section);
   field->condition = dvi__arena_take(&scene->arena, (size_t)section->count + 1,
                                      sizeof *field->condition);
@@ -176,7 +180,7 @@ bool dvi__read_boundary(dvi_scene *scene, const dvi__tree *section)
 
 static bool of_wave(dvi_scene *scene, const dvi__tree *section, const char *name)
 {
-  return scene->field->maxwell == NULL ||
+  return (scene->field->maxwell == NULL && !dvi__is_elastic(scene)) ||
          dvi__scene_refuse(scene, section->span, "'%s' is of 'field: wave'", name);
 }
 
@@ -210,6 +214,7 @@ bool dvi__read_solve(dvi_scene *scene, const dvi__tree *section)
 
 bool dvi__read_field_start(dvi_scene *scene, const dvi__tree *section)
 {
+  if (dvi__is_elastic(scene)) return dvi__elastic_read_start(scene, section);
   if (scene->field->maxwell != NULL) return dvi__maxwell_read_start(scene, section);
   static const char *const known[] = {"u", "u'"};
   dvi__place **const place[] = {&scene->field->value, &scene->field->rate};

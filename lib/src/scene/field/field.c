@@ -88,13 +88,20 @@ bool dvi__declare_unknowns(dvi_scene *scene, const dvi__tree *section, const cha
 const char *const dvi__observable[] = {"energy", "growth", "gauss", "charge", "divergence", NULL};
 enum { OF_WAVES = 2 };
 
+/* Return what marches of the scene's field observe, NULL beyond the last one. */
+static const char *observable(const dvi_scene *scene, int i)
+{
+  if (dvi__is_elastic(scene)) return dvi__elastic_observable(scene, i);
+  return scene->field->maxwell != NULL || i < OF_WAVES ? dvi__observable[i] : NULL;
+}
+
 int dvi__list_field_columns(const dvi_scene *scene, const char **known)
 {
   const struct dvi__scene_maxwell *m = scene->field->maxwell;
   const int probes = m != NULL ? m->probes : scene->terms.invariant_count;
   int count = 0;
-  for (; m != NULL ? dvi__observable[count] != NULL : count < OF_WAVES; count++)
-    if (known != NULL) known[count] = dvi__observable[count];
+  for (; observable(scene, count) != NULL; count++)
+    if (known != NULL) known[count] = observable(scene, count);
   for (int i = 0; i < scene->terms.symmetry_count; i++, count++)
     if (known != NULL) known[count] = scene->terms.symmetries[i].name;
   for (int i = 0; i < probes; i++, count++)
@@ -116,6 +123,8 @@ bool dvi__is_mechanical_column(const dvi_scene *scene, const char *name)
 }
 
 /* ---- the field ---- */
+
+const char *const dvi__field_word[DVI__FIELD_WORDS] = {"wave", "maxwell", "elastic"};
 
 static dvi_status make_field(dvi_scene *scene)
 {
@@ -156,8 +165,9 @@ static bool choose_step(dvi_scene *scene)
 {
   double omega;
   dvi_scene_plan *plan = &scene->plan;
-  if (!(plan->fraction > 0) || scene->field->field == NULL) return true;
-  const dvi_status status = dvi_field_fastest(scene->field->field, &omega);
+  if (!(plan->fraction > 0) || scene->field->mesh == NULL) return true;
+  const dvi_status status = dvi__is_elastic(scene) ? dvi__elastic_fastest(scene, &omega)
+                                                   : dvi_field_fastest(scene->field->field, &omega);
   if (status != DVI_OK)
     return dvi__complain_of_field(scene, dvi__tree_find(scene->tree, "mesh"), status);
   if (!(omega > 0))
@@ -171,16 +181,19 @@ static bool choose_step(dvi_scene *scene)
 
 bool dvi__read_field(dvi_scene *scene, const dvi__tree *section)
 {
-  static const char *const word[] = {"wave", "maxwell"};
+  static bool (*const make[DVI__FIELD_WORDS])(dvi_scene *, const dvi__tree *) = {
+      make_wave, dvi__maxwell_make, dvi__elastic_make};
   int which;
-  if (!dvi__tree_word(scene, section, "field", 2, word, &which)) return false;
-  if (which == 1 && scene->field->mesh == NULL) return dvi__grid_make(scene);
-  return (which == 0 ? make_wave : dvi__maxwell_make)(scene, section) && choose_step(scene);
+  if (!dvi__tree_word(scene, section, "field", DVI__FIELD_WORDS, dvi__field_word, &which))
+    return false;
+  if (scene->field->mesh == NULL) return dvi__grid_make(scene);
+  return make[which](scene, section) && choose_step(scene);
 }
 
 void dvi__scene_field_clear(dvi_scene *scene)
 {
   if (scene->field == NULL) return;
+  dvi__elastic_clear(scene);
   dvi_field_destroy(&scene->field->field);
   dvi_star_destroy(&scene->field->star);
   dvi_mesh_destroy(&scene->field->mesh);

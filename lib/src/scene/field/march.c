@@ -12,6 +12,7 @@ int dvi_scene_marches(const dvi_scene *scene, const char *method)
   if (method == NULL) method = scene->plan.method;
   if (method == NULL) return 0;
   if (scene->density != NULL) return dvi__density_marches(scene, method);
+  if (dvi__is_elastic(scene)) return dvi__elastic_marches(method);
   const size_t length = strcspn(method, ":");
   const char *name;
   for (int i = 0; (name = dvi_march_method_name(i)) != NULL; i++)
@@ -77,6 +78,7 @@ dvi_status dvi_scene_march_create(const dvi_scene *scene, const dvi_march_option
   if (scene->terms.damping > 0) return DVI_UNSUPPORTED;
   const dvi_march_options all = complete(scene, options);
   if (scene->density != NULL) return dvi__density_march(scene, &all, march);
+  if (dvi__is_elastic(scene)) return dvi__elastic_march(scene, &all, march);
   const struct dvi__scene_field *f = scene->field;
   if (f->kind != DVI_CIRCUMCENTRIC && strcmp(all.method, "yee") == 0 &&
       dvi_mesh_kind(f->mesh) == DVI_BOXES)
@@ -110,6 +112,7 @@ dvi_status dvi_scene_march_state(const dvi_scene *scene, const dvi_march *march,
   if (scene == NULL || march == NULL || q == NULL) return DVI_BAD_ARGUMENT;
   if (dvi_march_size(march, DVI_FORM_A) == 0) return DVI_UNSUPPORTED;
   if (scene->density != NULL) return dvi__density_march_state(scene, march, q, p);
+  if (dvi__is_elastic(scene)) return dvi__elastic_march_state(scene, march, q, p);
   const dvi_field *field = dvi_scene_field(scene);
   return field != NULL ? wave_state(field, march, q, p) : DVI_UNSUPPORTED;
 }

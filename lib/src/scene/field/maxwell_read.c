@@ -14,12 +14,12 @@ static const double cells_with_mesh = 50000;
 
 bool dvi__maxwell_begin(dvi_scene *scene)
 {
-  static const char *const word[] = {"wave", "maxwell"};
   const dvi__tree *field = dvi__tree_find(scene->tree, "field");
   int which;
   if (field == NULL) return true;
-  if (!dvi__tree_word(scene, field, "field", 2, word, &which)) return false;
-  if (which == 0) return true;
+  if (!dvi__tree_word(scene, field, "field", DVI__FIELD_WORDS, dvi__field_word, &which))
+    return false;
+  if (strcmp(dvi__field_word[which], "maxwell") != 0) return true;
   scene->field->maxwell = dvi__arena_take(&scene->arena, 1, sizeof *scene->field->maxwell);
   return scene->field->maxwell != NULL || dvi__scene_no_memory(scene);
 }

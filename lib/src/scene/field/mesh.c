@@ -51,7 +51,8 @@ static bool report_file(dvi_scene *scene, const dvi__tree *file, dvi_status stat
 }
 
 /* Refuse lists of some of the axes, whose other ones would be as long as 1, say. One number of
- * cells may stand for all axes. Shapes have lengths of other kinds. */
+ * cells may stand for all axes, and of a solid one grading is that of the first axis. Shapes have
+ * lengths of other kinds. */
 static bool has_all_axes(dvi_scene *scene, const dvi__tree *section, const char *generator)
 {
   static const char *const grid[] = {"box", "kuhn", "kuhn-torus", "staggered", "bcc-torus"},
@@ -64,7 +65,9 @@ static bool has_all_axes(dvi_scene *scene, const dvi__tree *section, const char 
   for (size_t k = 0; k < sizeof list / sizeof *list && is_grid; k++) {
     const dvi__tree *tree = dvi__tree_find(section, list[k]);
     const int count = tree == NULL ? axes : tree->kind == DVI__SEQUENCE ? tree->count : 1;
-    if (count < axes)
+    const bool is_first = dvi__is_elastic(scene) && tree != NULL && tree->kind == DVI__SCALAR &&
+                          list[k] == list[2];
+    if (count < axes && !is_first)
       return dvi__scene_refuse(scene, tree->span,
                                "%s has a number for each axis of a mesh, and this one has %d axes, "
                                "as in '%s'",
@@ -155,7 +158,7 @@ bool dvi__read_mesh(dvi_scene *scene, const dvi__tree *section)
   if ((generator == NULL) == (file == NULL))
     return dvi__scene_refuse(scene, section->span,
                              "a mesh has a generator or a file, as in 'mesh: {generator: disk}'");
-  if (!dvi__maxwell_begin(scene)) return false;
+  if (!dvi__maxwell_begin(scene) || !dvi__elastic_begin(scene)) return false;
   if (!(generator != NULL ? generate(scene, section, generator) : read_file(scene, section, file)))
     return false;
   if (dvi__has_density(scene)) return hand_over(scene, section);
@@ -171,5 +174,6 @@ bool dvi__read_mesh(dvi_scene *scene, const dvi__tree *section)
                              "an electromagnetic field has a mesh in at most 3 coordinates, and "
                              "this one has %d",
                              scene->field->space);
-  return name_place(scene, section);
+  if (!dvi__is_elastic(scene)) return name_place(scene, section);
+  return dvi__elastic_check_mesh(scene, section) && dvi__elastic_name_place(scene, section);
 }

@@ -11,6 +11,10 @@
 
 enum { DVI__PLACE_SPACE = 4, DVI__PLACE_NUMBERS = 2 * DVI__PLACE_SPACE + 1 };
 
+/* What a scene's field may be: wave, maxwell, elastic. */
+enum { DVI__FIELD_WORDS = 3 };
+extern const char *const dvi__field_word[DVI__FIELD_WORDS];
+
 /* What of a place a function may have beside the position. */
 enum { DVI__OF_NORMAL = 1, DVI__OF_VALUE = 2 };
 
@@ -21,7 +25,8 @@ typedef struct dvi__place {
 } dvi__place;
 
 struct dvi__scene_field {
-  struct dvi__scene_maxwell *maxwell; /* NULL for waves */
+  struct dvi__scene_maxwell *maxwell; /* NULL for others */
+  struct dvi__scene_elastic *elastic; /* NULL for others (scene/elastic) */
   dvi_generator_options grid;         /* of boxes */
   bool is_grid;                       /* the mesh is one of boxes that were generated */
   dvi_mesh *drawn;                    /* that of a grid, once it is asked for */

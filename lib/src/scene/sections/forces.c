@@ -54,7 +54,8 @@ bool dvi__read_dissipation(dvi_scene *scene, const dvi__tree *section)
 bool dvi__read_damping(dvi_scene *scene, const dvi__tree *section)
 {
   double *gamma = &scene->terms.damping;
-  if (!refuse_other_motions(scene, section, "damping") ||
+  if (!dvi__elastic_refuse_section(scene, section, "damping") ||
+      !refuse_other_motions(scene, section, "damping") ||
       !dvi__tree_number(scene, section, "damping", gamma))
     return false;
   return *gamma >= 0 || dvi__scene_refuse(scene, section->span,

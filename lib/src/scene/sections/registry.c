@@ -76,10 +76,11 @@ static bool registry_read_first(dvi_scene *scene)
 
 /* Sections of a scene of a field, those first that no other scene has. */
 static const char *const field_sections[] = {
-    "mesh",   "field",   "star",         "materials",   "boundary", "source", "potential",
-    "probes", "solve",   "polarization", "sources",     "title",    "method", "step",
-    "until",  "initial", "parameters",   "definitions", "sweep",    "report", "damping"};
-enum { FIELD_SECTIONS = sizeof field_sections / sizeof *field_sections, OF_FIELD_ALONE = 11 };
+    "mesh",       "field",       "star",   "materials",    "boundary", "source",
+    "potential",  "probes",      "solve",  "polarization", "sources",  "loads",
+    "obstacles",  "title",       "method", "step",         "until",    "initial",
+    "parameters", "definitions", "sweep",  "report",       "damping"};
+enum { FIELD_SECTIONS = sizeof field_sections / sizeof *field_sections, OF_FIELD_ALONE = 13 };
 
 /* Sections of a scene of a density, those first that no other scene has. */
 static const char *const density_sections[] = {

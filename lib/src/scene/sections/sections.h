@@ -85,6 +85,33 @@ bool dvi__density_read_probes(dvi_scene *scene, const dvi__tree *section);
 const dvi_mesh *dvi__density_mesh(dvi_scene *scene);
 void dvi__scene_density_clear(dvi_scene *scene);
 
+/* Do so for a solid (scene/elastic): note whether the field is one, before the mesh is read, check
+ * the mesh, name a place, read the sections that other fields have, too, and refuse those that only
+ * others have. */
+bool dvi__elastic_begin(dvi_scene *scene);
+bool dvi__is_elastic(const dvi_scene *scene);
+bool dvi__elastic_check_mesh(dvi_scene *scene, const dvi__tree *section);
+bool dvi__elastic_name_place(dvi_scene *scene, const dvi__tree *section);
+bool dvi__elastic_read_materials(dvi_scene *scene, const dvi__tree *section);
+bool dvi__elastic_read_boundary(dvi_scene *scene, const dvi__tree *section);
+bool dvi__elastic_read_start(dvi_scene *scene, const dvi__tree *section);
+bool dvi__elastic_read_probes(dvi_scene *scene, const dvi__tree *section);
+bool dvi__elastic_refuse_section(dvi_scene *scene, const dvi__tree *section, const char *name);
+bool dvi__elastic_make(dvi_scene *scene, const dvi__tree *section);
+void dvi__elastic_clear(dvi_scene *scene);
+
+/* Return the name of what marches of the solid observe, NULL beyond the last one. */
+const char *dvi__elastic_observable(const dvi_scene *scene, int i);
+
+dvi_status dvi__elastic_fastest(const dvi_scene *scene, double *omega);
+bool dvi__elastic_marches(const char *method);
+dvi_status dvi__elastic_march(const dvi_scene *scene, const dvi_march_options *options,
+                              dvi_march **march);
+dvi_status dvi__elastic_march_state(const dvi_scene *scene, const dvi_march *march, double *q,
+                                    double *p);
+dvi_status dvi__elastic_laws(const dvi_scene *scene, const dvi_march_options *options, int steps,
+                             dvi_law *law, int *count);
+
 /* Do for a density what functions of dvi/scene.h do for a field. */
 bool dvi__density_marches(const dvi_scene *scene, const char *method);
 dvi_status dvi__density_march(const dvi_scene *scene, const dvi_march_options *options,

@@ -1,0 +1,201 @@
+#include "load/elastic.h"
+
+#include <dvi/march.h>
+#include <dvi/scene.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/command.h"
+
+enum { NAME_SIZE = 32 };
+
+const dvi_elastic *elastic_of(const problem *scene)
+{
+  return dvi_scene_elastic(scene->scene);
+}
+
+static int out_of_memory(void)
+{
+  complain("out of memory");
+  return FAILED;
+}
+
+/* ---- facts ---- */
+
+void elastic_tell(const problem *scene)
+{
+  const dvi_elastic *solid = elastic_of(scene);
+  const dvi_mesh *mesh = dvi_elastic_mesh(solid);
+  const int n = dvi_mesh_dimension(mesh);
+  const int64_t vertices = dvi_mesh_count(mesh, 0);
+  const double *mass = dvi_elastic_masses(solid);
+  double omega = 0.0, all = 0.0, least = HUGE_VAL, most = 0.0;
+  int64_t unknowns;
+  (void)dvi_elastic_unknowns(solid, &unknowns);
+  for (int64_t v = 0; v < vertices; v++) {
+    all += mass[v];
+    least = fmin(least, mass[v]);
+    most = fmax(most, mass[v]);
+  }
+  (void)printf("mesh: dimension %d, %lld vertices, %lld cells; parts", n, (long long)vertices,
+               (long long)dvi_mesh_count(mesh, n));
+  for (int i = 0; dvi_mesh_part_name(mesh, i) != NULL; i++)
+    (void)printf("%s %s", i > 0 ? "," : "", dvi_mesh_part_name(mesh, i));
+  (void)printf(
+      "\nsolid: %lld unknown displacements, %lld given; mass %.9g, of nodes %.3g to %.3g\n",
+      (long long)unknowns, (long long)(vertices * n - unknowns), all, least, most);
+  if (dvi_elastic_fastest(solid, &omega) == DVI_OK && omega > 0.0)
+    (void)printf("largest frequency at rest: %.6g; verlet is stable near rest below h = %.6g\n",
+                 omega, 2.0 / omega);
+}
+
+/* Measure the evaluations of cells in a unit of time, in a few of the longest steps. */
+static double measure_cost(const problem *scene, const char *method, double fraction)
+{
+  enum { STEPS = 4 };
+  const dvi_march_options options = {
+      .size = sizeof options, .method = method, .fraction = fraction};
+  dvi_march_facts facts;
+  dvi_march *march = NULL;
+  double rate = NAN;
+  if (dvi_scene_march_create(scene->scene, &options, &march) != DVI_OK) return rate;
+  dvi_march_facts_of(march, &facts);
+  const double span = STEPS * facts.longest;
+  if (dvi_march_advance(march, span) == DVI_OK) {
+    dvi_march_facts_of(march, &facts);
+    rate = (double)facts.updates / span;
+  }
+  dvi_march_destroy(&march);
+  return rate;
+}
+
+void elastic_tell_cost(const problem *scene, const char *method, double fraction)
+{
+  const double own = measure_cost(scene, method, fraction),
+               other = measure_cost(scene, "verlet", fraction);
+  if (!isfinite(own) || !isfinite(other)) return;
+  (void)printf("cost: %.4g evaluations of cells in a unit of time, verlet with the same fraction "
+               "of its bound %.4g, %.1f times as many\n",
+               own, other, other / own);
+}
+
+/* ---- views ---- */
+
+/* Copy vectors or matrices of n into those of three. */
+static void widen(int n, int rank, int64_t count, const double *from, double *to)
+{
+  const int own = rank == 1 ? n : n * n, all = rank == 1 ? 3 : 9;
+  memset(to, 0, (size_t)count * (size_t)all * sizeof *to);
+  for (int64_t k = 0; k < count; k++)
+    for (int i = 0; i < own; i++)
+      to[k * all + (rank == 1 ? i : i / n * 3 + i % n)] = from[k * own + i];
+}
+
+static dvi_status displace_mesh(const dvi_mesh *mesh, const double *u, double *point,
+                                dvi_mesh **made)
+{
+  const int n = dvi_mesh_dimension(mesh);
+  int width;
+  const double *X = dvi_mesh_points(mesh);
+  for (int64_t k = 0; k < dvi_mesh_count(mesh, 0) * n; k++) point[k] = X[k] + u[k];
+  const dvi_mesh_terms terms = {.size = sizeof terms,
+                                .dimension = n,
+                                .points = dvi_mesh_count(mesh, 0),
+                                .point = point,
+                                .cells = dvi_mesh_count(mesh, n),
+                                .vertex = dvi_mesh_vertices(mesh, n, &width)};
+  return dvi_mesh_create(&terms, made);
+}
+
+/* The stresses of all cells. von Mises' is not known of every law. */
+static dvi_status add_stresses(const dvi_elastic *solid, const double *u, double *work,
+                               elastic_views *views, double *to)
+{
+  const dvi_mesh *mesh = dvi_elastic_mesh(solid);
+  const int n = dvi_mesh_dimension(mesh);
+  const int64_t cells = dvi_mesh_count(mesh, n);
+  dvi_status status = dvi_elastic_stress(solid, u, work);
+  if (status != DVI_OK) return status;
+  widen(n, 2, cells, work, to);
+  views->view[views->count++] = (dvi_view){"stress", to, 9, n};
+  status = dvi_elastic_von_mises(solid, u, to + 9 * cells);
+  if (status == DVI_UNSUPPORTED) return DVI_OK;
+  views->view[views->count++] = (dvi_view){"von_mises", to + 9 * cells, 1, n};
+  return status;
+}
+
+int elastic_views_make(const problem *scene, const double *u, const double *velocity,
+                       elastic_views *views)
+{
+  const dvi_elastic *solid = elastic_of(scene);
+  const dvi_mesh *mesh = dvi_elastic_mesh(solid);
+  const int n = dvi_mesh_dimension(mesh);
+  const int64_t vertices = dvi_mesh_count(mesh, 0), cells = dvi_mesh_count(mesh, n);
+  *views = (elastic_views){.count = 2};
+  views->value = calloc((size_t)(9 * vertices + 19 * cells), sizeof *views->value);
+  if (views->value == NULL) return out_of_memory();
+  double *const speed = views->value + 3 * vertices, *const work = speed + 3 * vertices,
+                *const stress = work + 3 * vertices + 9 * cells;
+  widen(n, 1, vertices, u, views->value);
+  widen(n, 1, vertices, velocity, speed);
+  views->view[0] = (dvi_view){"u", views->value, 3, 0};
+  views->view[1] = (dvi_view){"velocity", speed, 3, 0};
+  dvi_status status = displace_mesh(mesh, u, work, &views->mesh);
+  if (status == DVI_OK) status = add_stresses(solid, u, work, views, stress);
+  return status == DVI_OK ? DONE : library_error(status);
+}
+
+void elastic_views_clear(elastic_views *views)
+{
+  dvi_mesh_destroy(&views->mesh);
+  free(views->value);
+  views->value = NULL;
+}
+
+int elastic_views_of_state(const problem *scene, double t, const double *q, const double *p,
+                           elastic_views *views)
+{
+  const dvi_elastic *solid = elastic_of(scene);
+  const dvi_mesh *mesh = dvi_elastic_mesh(solid);
+  const int n = dvi_mesh_dimension(mesh);
+  const size_t numbers = (size_t)dvi_mesh_count(mesh, 0) * (size_t)n;
+  const double *mass = dvi_elastic_masses(solid);
+  int64_t unknowns;
+  const int *unknown = dvi_elastic_unknowns(solid, &unknowns);
+  double *u = calloc(3 * numbers, sizeof *u), *rate = u + numbers, *v = rate + numbers;
+  *views = (elastic_views){.count = 0};
+  if (u == NULL) return out_of_memory();
+  for (size_t i = 0; i < numbers; i++)
+    if (unknown[i] >= 0) v[unknown[i]] = p[unknown[i]] / mass[i / (size_t)n];
+  const dvi_status status = dvi_elastic_lift(solid, t, q, v, u, rate);
+  const int code = status == DVI_OK ? elastic_views_make(scene, u, rate, views)
+                                    : library_error(status);
+  free(u);
+  return code;
+}
+
+int elastic_write_modes(const problem *scene, const char *path, int count, const double *mode)
+{
+  const dvi_mesh *mesh = dvi_elastic_mesh(elastic_of(scene));
+  const int n = dvi_mesh_dimension(mesh);
+  const int64_t vertices = dvi_mesh_count(mesh, 0);
+  dvi_view *view = calloc((size_t)count, sizeof *view);
+  char(*name)[NAME_SIZE] = calloc((size_t)count, sizeof *name);
+  double *value = calloc((size_t)count * 3 * (size_t)vertices, sizeof *value);
+  int code = view != NULL && name != NULL && value != NULL ? DONE : out_of_memory();
+  for (int i = 0; i < count && code == DONE; i++) {
+    (void)snprintf(name[i], NAME_SIZE, "mode_%d", i + 1);
+    widen(n, 1, vertices, mode + i * vertices * n, value + i * 3 * vertices);
+    view[i] = (dvi_view){name[i], value + i * 3 * vertices, 3, 0};
+  }
+  if (code == DONE) {
+    const dvi_status status = dvi_mesh_write(mesh, path, count, view);
+    code = status == DVI_OK ? DONE : library_error(status);
+  }
+  free(view);
+  free(name);
+  free(value);
+  return code;
+}

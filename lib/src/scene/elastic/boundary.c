@@ -1,0 +1,360 @@
+/* The sections boundary, loads and obstacles of a solid. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "scene/elastic/scene_elastic.h"
+#include "scene/sections/sections.h"
+
+static const char *const axis[] = {"x", "y", "z"};
+
+/* ---- given displacements ---- */
+
+static int displace(double t, const double *X, double *u, double *rate, void *user)
+{
+  const dvi__solid_function *f = user;
+  const int failed = dvi__solid_function_value(f, t, X, NULL, u);
+  if (failed == 0 && f->has_time) return dvi__solid_function_rate(f, t, X, rate);
+  for (int i = 0; i < f->n && failed == 0; i++) rate[i] = 0;
+  return failed;
+}
+
+/* One component, which the library takes from a vector. */
+typedef struct component {
+  dvi__solid_function *function;
+  int axis;
+} component;
+
+static int displace_one(double t, const double *X, double *u, double *rate, void *user)
+{
+  const component *c = user;
+  memset(u, 0, (size_t)c->function->n * sizeof *u);
+  memset(rate, 0, (size_t)c->function->n * sizeof *rate);
+  const int failed = dvi__solid_function_value(c->function, t, X, NULL, u + c->axis);
+  return failed != 0 || !c->function->has_time
+             ? failed
+             : dvi__solid_function_rate(c->function, t, X, rate + c->axis);
+}
+
+static dvi_elastic_condition *next_condition(dvi_scene *scene, const char *part)
+{
+  struct dvi__scene_elastic *s = scene->field->elastic;
+  dvi_elastic_condition *made = s->condition + s->conditions++;
+  *made = (dvi_elastic_condition){.part = part, .is_steady = 1};
+  return made;
+}
+
+/* Read '{x: 0, z: 0.1*t}', each component by itself. */
+static bool read_components(dvi_scene *scene, const char *part, const dvi__tree *tree)
+{
+  const int n = scene->field->space;
+  if (!dvi__want_keys(scene, tree, "a displacement by component", n, axis)) return false;
+  for (int i = 0; i < n && i < DVI__SOLID_AXES; i++) {
+    const dvi__tree *value = dvi__tree_find(tree, axis[i]);
+    if (value == NULL) continue;
+    component *c = dvi__arena_take(&scene->arena, 1, sizeof *c);
+    if (c == NULL) return dvi__scene_no_memory(scene);
+    c->axis = i;
+    if (!dvi__solid_function_read(scene, value, DVI__SOLID_TIME, 1, "a displacement", &c->function))
+      return false;
+    dvi_elastic_condition *made = next_condition(scene, part);
+    made->component[i] = 1;
+    made->displacement = displace_one;
+    made->is_steady = !c->function->has_time;
+    made->user = c;
+  }
+  return true;
+}
+
+/* A condition is a word, or gives a displacement. */
+static bool read_condition(dvi_scene *scene, const char *part, dvi__span span,
+                           const dvi__tree *tree)
+{
+  static const char *const word[] = {"free", "fixed"};
+  dvi__solid_function *function;
+  int64_t count;
+  int which;
+  (void)dvi_mesh_part_cells(scene->field->mesh, part, 0, &count);
+  if (count < 0) return dvi__refuse_part(scene, span, part, false);
+  if (tree->kind == DVI__SCALAR) {
+    if (!dvi__tree_word(scene, tree, "a condition", 2, word, &which)) return false;
+    if (which == 1) (void)next_condition(scene, part);
+    return true;
+  }
+  if (!dvi__want_mapping(scene, tree, "a condition") ||
+      !dvi__want_keys(scene, tree, "a condition", 1, word + 1))
+    return false;
+  if (tree->count != 1)
+    return dvi__scene_refuse(scene, tree->span,
+                             "a condition of a solid is fixed or free, or gives a displacement, as "
+                             "in '{fixed: [0, 0.1*t]}' or '{fixed: {x: 0}}'");
+  if (tree->child[0]->kind == DVI__MAPPING) return read_components(scene, part, tree->child[0]);
+  if (!dvi__solid_function_read(scene, tree->child[0], DVI__SOLID_TIME, scene->field->space,
+                                "a displacement", &function))
+    return false;
+  dvi_elastic_condition *made = next_condition(scene, part);
+  made->displacement = displace;
+  made->is_steady = !function->has_time;
+  made->user = function;
+  return true;
+}
+
+bool dvi__elastic_read_boundary(dvi_scene *scene, const dvi__tree *section)
+{
+  struct dvi__scene_elastic *s = scene->field->elastic;
+  const size_t most = (size_t)DVI__SOLID_AXES * (size_t)section->count + 1;
+  s->condition = dvi__arena_take(&scene->arena, most, sizeof *s->condition);
+  if (s->condition == NULL) return dvi__scene_no_memory(scene);
+  if (section->kind == DVI__SCALAR)
+    return read_condition(scene, "boundary", section->span, section);
+  if (!dvi__want_mapping(scene, section, "boundary")) return false;
+  for (int i = 0; i < section->count; i++)
+    if (!read_condition(scene, section->key[i]->text, section->key[i]->span, section->child[i]))
+      return false;
+  return true;
+}
+
+/* ---- loads ---- */
+
+static int push(double t, const double *X, const double *normal, double *force, void *user)
+{
+  return dvi__solid_function_value(user, t, X, normal, force);
+}
+
+static bool read_load(dvi_scene *scene, const dvi__tree *key, const dvi__tree *tree)
+{
+  static const char *const known[] = {"force", "traction"};
+  struct dvi__scene_elastic *s = scene->field->elastic;
+  dvi__solid_function *function;
+  int64_t cells, count;
+  if (!dvi__want_mapping(scene, tree, "a load") || !dvi__want_keys(scene, tree, "a load", 2, known))
+    return false;
+  if (tree->count != 1)
+    return dvi__scene_refuse(scene, tree->span,
+                             "a load is a force per volume of a part, as in '{force: [0, 0, -1]}', "
+                             "or a traction per area of a part of the boundary, as in '{traction: "
+                             "-2*normal}'");
+  const bool is_traction = strcmp(tree->key[0]->text, "traction") == 0;
+  const int degree = scene->field->dimension - is_traction;
+  (void)dvi_mesh_part_cells(scene->field->mesh, key->text, scene->field->dimension, &cells);
+  (void)dvi_mesh_part_cells(scene->field->mesh, key->text, degree, &count);
+  if (is_traction && (count <= 0 || cells > 0))
+    return dvi__scene_refuse(
+        scene, key->span, "the mesh has no part '%s' of facets for a traction; 'boundary' is one",
+        key->text);
+  if (count <= 0) return dvi__refuse_part(scene, key->span, key->text, true);
+  if (!dvi__solid_function_read(
+          scene, tree->child[0], DVI__SOLID_TIME | (is_traction ? DVI__SOLID_NORMAL : 0),
+          scene->field->space, is_traction ? "a traction" : "a force", &function))
+    return false;
+  s->load[s->loads++] = (dvi_elastic_load){
+      .part = key->text, .force = push, .is_steady = !function->has_time, .user = function};
+  return true;
+}
+
+bool dvi__read_loads(dvi_scene *scene, const dvi__tree *section)
+{
+  struct dvi__scene_elastic *s = scene->field->elastic;
+  if (s == NULL) return dvi__scene_refuse(scene, section->span, "'loads' is of 'field: elastic'");
+  if (!dvi__want_mapping(scene, section, "loads")) return false;
+  const size_t most = (size_t)section->count + (size_t)s->materials + 1;
+  s->load = dvi__arena_take(&scene->arena, most, sizeof *s->load);
+  if (s->load == NULL) return dvi__scene_no_memory(scene);
+  for (int i = 0; i < section->count; i++) {
+    const dvi__tree *key = section->key[i];
+    if (strcmp(key->text, "gravity") != 0) {
+      if (!read_load(scene, key, section->child[i])) return false;
+      continue;
+    }
+    s->gravity = section->child[i];
+    if (!dvi__point_read(scene, s->gravity, scene->field->space, "gravity", s->acceleration))
+      return false;
+  }
+  return dvi__solid_add_gravity(scene);
+}
+
+/* ---- gravity ---- */
+
+/* The weight of a part, beside what other parts say of its cells. */
+typedef struct weight {
+  int n;
+  double force[DVI__SOLID_AXES];
+} weight;
+
+static int weigh(double t, const double *X, const double *normal, double *force, void *user)
+{
+  const weight *w = user;
+  (void)t, (void)X, (void)normal;
+  for (int i = 0; i < w->n; i++) force[i] = w->force[i];
+  return 0;
+}
+
+static bool add_weight(dvi_scene *scene, const char *part, double density)
+{
+  struct dvi__scene_elastic *s = scene->field->elastic;
+  weight *w = dvi__arena_take(&scene->arena, 1, sizeof *w);
+  if (w == NULL) return dvi__scene_no_memory(scene);
+  w->n = scene->field->space;
+  for (int i = 0; i < w->n; i++) w->force[i] = density * s->acceleration[i];
+  s->load[s->loads++] = (dvi_elastic_load){.part = part, .force = weigh, .is_steady = 1, .user = w};
+  return true;
+}
+
+/* The last material of a cell counts, and loads add up. So the load of a part is that of its
+ * density beside the one that its cells had before, which is the same in all of them. */
+bool dvi__solid_add_gravity(dvi_scene *scene)
+{
+  struct dvi__scene_elastic *s = scene->field->elastic;
+  const dvi_mesh *mesh = scene->field->mesh;
+  const int n = scene->field->dimension;
+  if (s->gravity == NULL) return true;
+  double *rho = dvi__arena_take(&scene->arena, (size_t)dvi_mesh_count(mesh, n), sizeof *rho);
+  if (rho == NULL) return dvi__scene_no_memory(scene);
+  for (int i = 0; i < s->materials; i++) {
+    int64_t count;
+    const dvi_elastic_material *m = s->material + i;
+    const int *cell = dvi_mesh_part_cells(mesh, m->part, n, &count);
+    const double before = rho[cell[0]];
+    for (int64_t k = 0; k < count; k++) {
+      if (rho[cell[k]] != before)
+        return dvi__scene_refuse(scene, s->material_span[i],
+                                 "with gravity the part '%s' must lie in one other material, and "
+                                 "some of its cells have the density %g, and others %g",
+                                 m->part, before, rho[cell[k]]);
+      rho[cell[k]] = m->rho;
+    }
+    if (!add_weight(scene, m->part, m->rho - before)) return false;
+  }
+  return true;
+}
+
+/* ---- obstacles ---- */
+
+static bool read_plane(dvi_scene *scene, const dvi__tree *tree, dvi_obstacle *o)
+{
+  static const char *const known[] = {"point", "normal"};
+  const int n = scene->field->space;
+  const dvi__tree *point = dvi__tree_find(tree, "point"), *normal = dvi__tree_find(tree, "normal");
+  double square = 0;
+  if (!dvi__want_keys(scene, tree, "a plane", 2, known)) return false;
+  if (point == NULL || normal == NULL)
+    return dvi__scene_refuse(scene, tree->span,
+                             "a plane has a point and a normal, which points to the side of the "
+                             "body, as in '{point: [0, 0, 0], normal: [0, 0, 1]}'");
+  if (!dvi__point_read(scene, point, n, "a point", o->point) ||
+      !dvi__point_read(scene, normal, n, "a normal", o->normal))
+    return false;
+  for (int i = 0; i < n; i++) square += o->normal[i] * o->normal[i];
+  return (square > 0 && isfinite(square)) ||
+         dvi__scene_refuse(scene, normal->span, "the normal of a plane is not 0");
+}
+
+static bool read_ball(dvi_scene *scene, const dvi__tree *tree, dvi_obstacle *o)
+{
+  static const char *const known[] = {"centre", "radius"};
+  const dvi__tree *centre = dvi__tree_find(tree, "centre"),
+                  *radius = dvi__tree_find(tree, "radius");
+  if (!dvi__want_keys(scene, tree, "a ball", 2, known)) return false;
+  if (centre == NULL || radius == NULL)
+    return dvi__scene_refuse(scene, tree->span,
+                             "a ball has a centre and a radius, as in '{centre: [0, 0, 0], radius: "
+                             "1}'");
+  return dvi__point_read(scene, centre, scene->field->space, "a centre", o->point) &&
+         dvi__solid_number(scene, radius, "radius", false, &o->radius);
+}
+
+static const char *const obstacle_key[] = {"plane", "ball", "hollow", "restitution", "friction"};
+enum { SHAPES = 3, OBSTACLE_KEYS = 5 };
+
+static bool read_shape(dvi_scene *scene, const dvi__tree *tree, dvi_obstacle *o)
+{
+  static const dvi_obstacle_kind kind[SHAPES] = {DVI_OBSTACLE_PLANE, DVI_OBSTACLE_BALL,
+                                                 DVI_OBSTACLE_HOLLOW};
+  const dvi__tree *shape = NULL;
+  int shapes = 0;
+  for (int k = 0; k < SHAPES; k++) {
+    const dvi__tree *found = dvi__tree_find(tree, obstacle_key[k]);
+    if (found == NULL) continue;
+    shape = found;
+    o->kind = kind[k];
+    shapes++;
+  }
+  if (shapes != 1)
+    return dvi__scene_refuse(scene, tree->span,
+                             "an obstacle is a plane, a ball, or the hollow of one, as in '{ball: "
+                             "{centre: [0, 0, -2], radius: 1}, restitution: 0.5}'");
+  return dvi__want_mapping(scene, shape, "the shape of an obstacle") &&
+         (o->kind == DVI_OBSTACLE_PLANE ? read_plane : read_ball)(scene, shape, o);
+}
+
+static bool read_obstacle(dvi_scene *scene, const dvi__tree *key, const dvi__tree *tree,
+                          dvi_obstacle *o)
+{
+  *o = (dvi_obstacle){.name = key->text};
+  if (!dvi__want_name(scene, key->text, key->span) ||
+      !dvi__want_mapping(scene, tree, "an obstacle") ||
+      !dvi__want_keys(scene, tree, "an obstacle", OBSTACLE_KEYS, obstacle_key) ||
+      !read_shape(scene, tree, o))
+    return false;
+  const dvi__tree *restitution = dvi__tree_find(tree, "restitution"),
+                  *friction = dvi__tree_find(tree, "friction");
+  if (restitution == NULL)
+    return dvi__scene_refuse(scene, tree->span, "an obstacle needs 'restitution', from 0 to 1");
+  if (!dvi__solid_number(scene, restitution, "restitution", true, &o->restitution) ||
+      (friction != NULL && !dvi__solid_number(scene, friction, "friction", true, &o->friction)))
+    return false;
+  return o->restitution <= 1 ||
+         dvi__scene_refuse(scene, restitution->span,
+                           "the restitution is %g; it is a number from 0 to 1", o->restitution);
+}
+
+bool dvi__read_obstacles(dvi_scene *scene, const dvi__tree *section)
+{
+  struct dvi__scene_elastic *s = scene->field->elastic;
+  if (s == NULL)
+    return dvi__scene_refuse(scene, section->span, "'obstacles' is of 'field: elastic'");
+  if (!dvi__want_mapping(scene, section, "obstacles")) return false;
+  s->obstacle = dvi__arena_take(&scene->arena, (size_t)section->count + 1, sizeof *s->obstacle);
+  if (s->obstacle == NULL) return dvi__scene_no_memory(scene);
+  for (int i = 0; i < section->count; i++)
+    if (!read_obstacle(scene, section->key[i], section->child[i], s->obstacle + s->obstacles++))
+      return false;
+  return true;
+}
+
+/* The distance of a point from an obstacle, below 0 inside. */
+static double gap_of(const dvi_obstacle *o, int n, const double *x)
+{
+  double along = 0, square = 0, length = 0;
+  for (int i = 0; i < n; i++) {
+    const double d = x[i] - o->point[i];
+    along += d * o->normal[i];
+    square += d * d;
+    length += o->normal[i] * o->normal[i];
+  }
+  if (o->kind == DVI_OBSTACLE_PLANE) return along / sqrt(length);
+  return o->kind == DVI_OBSTACLE_BALL ? sqrt(square) - o->radius : o->radius - sqrt(square);
+}
+
+bool dvi__solid_check_obstacles(dvi_scene *scene)
+{
+  const struct dvi__scene_elastic *s = scene->field->elastic;
+  const dvi_mesh *mesh = scene->field->mesh;
+  const int n = scene->field->space;
+  const double *X = dvi_mesh_points(mesh);
+  int64_t count;
+  const int *node = dvi_mesh_part_cells(mesh, "boundary", 0, &count);
+  for (int64_t k = 0; k < count && s->obstacles > 0; k++) {
+    double x[DVI__SOLID_AXES] = {0};
+    for (int i = 0; i < n; i++) x[i] = X[node[k] * n + i] + s->u[node[k] * n + i];
+    for (int i = 0; i < s->obstacles; i++)
+      if (gap_of(s->obstacle + i, n, x) < -1e-12 * (1 + fabs(x[0]) + fabs(x[1]) + fabs(x[2])))
+        return dvi__scene_refuse(
+            scene,
+            dvi__tree_find(dvi__tree_find(scene->tree, "obstacles"), s->obstacle[i].name)->span,
+            "at the start node %d, (%g, %g, %g), is %g inside of the obstacle "
+            "'%s'; move one of them",
+            node[k], x[0], x[1], x[2], -gap_of(s->obstacle + i, n, x), s->obstacle[i].name);
+  }
+  return true;
+}
