@@ -7,8 +7,8 @@
 enum { DVI__RIGID_MOTIONS = 6 };
 
 /* A body, whose nodes are joined by edges. Parts of it that share no facet count as rigid to each
- * other, although they turn about what they share. Its motions are sums of n translations and of turns
- * about its centre, with orthonormal coefficients in the scalar product of the mass. */
+ * other, although they turn about what they share. Its motions are sums of n translations and of
+ * turns about its centre, with orthonormal coefficients in the scalar product of the mass. */
 typedef struct dvi__rigid_body {
   double centre[DVI_ELASTIC_DIMENSION_MAX], size;
   int count; /* of motions that conditions allow */
