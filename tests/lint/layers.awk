@@ -63,6 +63,7 @@ BEGIN {
   sees["field/schroedinger"] = "core num solve march field/algebra field/space field/density"
   sees["field/multisymplectic"] = "core num march field/algebra"
   sees["field/moving"] = "core num field/mesh field/space"
+  sees["field/elastic"] = "core num field/algebra field/mesh"
   sees["field/rotations"] = "core field/algebra"
   # The library of scenes includes libdvi's public headers, too.
   sees["text"] = ""

@@ -1,0 +1,28 @@
+/* What a cell stores and pulls, beside what elastic.h tells. */
+#ifndef DVI_FIELD_ELASTIC_CELL_H
+#define DVI_FIELD_ELASTIC_CELL_H
+#include "field/elastic/laws.h"
+#include "field/mesh/mesh.h"
+
+/* Give H = grad u of displacements u [(n+1)*n], with the gradients g [(n+1)*n]. n is a constant
+ * where this is called. */
+static inline void dvi__displacement_gradient(int n, const double *g, const double *u, double *H)
+{
+  for (int i = 0; i < n; i++) {
+    double difference[DVI_ELASTIC_DIMENSION_MAX];
+    for (int a = 0; a < n; a++) difference[a] = u[(a + 1) * n + i] - u[i];
+    for (int j = 0; j < n; j++) {
+      double sum = 0;
+      for (int a = 0; a < n; a++) sum += difference[a] * g[(a + 1) * n + j];
+      H[i * n + j] = sum;
+    }
+  }
+}
+
+/* Give H of a cell. */
+void dvi__solid_strain(const dvi_elastic *e, int64_t cell, const double *u, double *H);
+
+/* Write the sentence about a condition for which dvi__solid_given returned not 0. */
+dvi_status dvi__solid_refuse_given(const dvi_elastic *e, int64_t vertex, int returned);
+
+#endif
