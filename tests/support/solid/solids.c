@@ -229,7 +229,7 @@ double *rounded(int count, const quad *x)
   return numbers;
 }
 
-double largest_error(int count, const double *a, const quad *b)
+double error_of_solid(int count, const double *a, const quad *b)
 {
   double most = 0;
   for (int i = 0; i < count; i++) {

@@ -42,6 +42,6 @@ void start_solid(const tested_solid *s, double size, quad *u, quad *v);
 double *rounded(int count, const quad *x);
 
 /* Give the largest |a_i - b_i|. */
-double largest_error(int count, const double *a, const quad *b);
+double error_of_solid(int count, const double *a, const quad *b);
 
 #endif
