@@ -79,9 +79,11 @@ void quad_avi_steps(const quad_solid *s, double fraction, int has_classes, doubl
     shortest = fmin(shortest, step[cell]);
   }
   shortest = fitted(shortest, span);
-  for (int cell = 0; cell < s->cells; cell++)
+  for (int cell = 0; cell < s->cells; cell++) {
+    if (isinf(step[cell])) continue;
     step[cell] = has_classes ? ldexp(shortest, ilogb(step[cell] / shortest * (1 + 1e-12)))
                              : fitted(step[cell], span);
+  }
 }
 
 /* ---- events ---- */
@@ -116,11 +118,14 @@ static quad time_of(const quad_avi *avi, int cell)
   return avi->start + avi->count[cell] * (quad)avi->step[cell];
 }
 
+/* A cell whose components are all given has an infinite step, and no events. */
 static int next_cell(const quad_avi *avi)
 {
-  int next = 0;
-  for (int cell = 1; cell < avi->s->cells; cell++)
-    if (time_of(avi, cell) < time_of(avi, next)) next = cell;
+  int next = -1;
+  for (int cell = 0; cell < avi->s->cells; cell++)
+    if (isfinite(avi->step[cell]) && (next < 0 || time_of(avi, cell) < time_of(avi, next)))
+      next = cell;
+  ck_assert_int_ge(next, 0);
   return next;
 }
 
@@ -199,6 +204,7 @@ void quad_avi_advance(quad_avi *avi, quad t, quad *u, quad *v)
   while (!(quad_avi_next(avi) > t)) quad_avi_event(avi);
   for (int node = 0; node < avi->s->vertices; node++) pass(avi, node, t, u, v);
   for (int cell = 0; cell < avi->s->cells; cell++) {
+    if (isinf(avi->step[cell])) continue;
     const quad step = avi->step[cell], since = t - (time_of(avi, cell) - step);
     kick(avi, cell, since - step / 2, v);
   }
