@@ -65,6 +65,7 @@ BEGIN {
   sees["field/moving"] = "core num field/mesh field/space"
   sees["field/elastic"] = "core num field/algebra field/mesh"
   sees["field/rotations"] = "core field/algebra"
+  sees["field/regge"] = "core num field/algebra field/mesh"
   # The library of scenes includes libdvi's public headers, too.
   sees["text"] = ""
   sees["expr"] = "text"

@@ -28,6 +28,7 @@
 #include <dvi/path.h>
 #include <dvi/quadrature.h>
 #include <dvi/reference.h>
+#include <dvi/regge.h>
 #include <dvi/rotations.h>
 #include <dvi/run.h>
 #include <dvi/schroedinger.h>

@@ -32,6 +32,8 @@ dvi__generator dvi__generate_box, dvi__generate_kuhn, dvi__generate_staggered;
 dvi__generator dvi__generate_bcc, dvi__generate_disk, dvi__generate_annulus;
 dvi__generator dvi__generate_icosphere, dvi__generate_torus, dvi__generate_genus;
 dvi__generator dvi__generate_cylinder, dvi__generate_ball;
+dvi__generator dvi__generate_simplex_4, dvi__generate_simplex_5, dvi__generate_cell_16;
+dvi__generator dvi__generate_cell_600, dvi__generate_cross_5;
 
 /* Fill in the triangles between two rows of points around an axis, of which those in odd rows are
  * turned by half of an edge. Row j has the points j*around and so on. Returns the end. */

@@ -47,6 +47,11 @@ static const kind kinds[] = {
     {"cylinder", dvi__generate_cylinder, .numbers = 2, .cells = {4, 8}, .sizes = 2, .space = 3,
      .extent = {1, 2}},
     {"ball", dvi__generate_ball, .numbers = 1, .cells = {4}, .sizes = 1, .space = 3},
+    {"simplex-4", dvi__generate_simplex_4, .sizes = 1, .space = 4},
+    {"simplex-5", dvi__generate_simplex_5, .sizes = 1, .space = 5},
+    {"cell-16", dvi__generate_cell_16, .sizes = 1, .space = 4},
+    {"cell-600", dvi__generate_cell_600, .sizes = 1, .space = 4},
+    {"cross-5", dvi__generate_cross_5, .sizes = 1, .space = 5},
 };
 enum { KINDS = sizeof kinds / sizeof *kinds };
 

@@ -1,0 +1,81 @@
+/* Simplices that do not exist, in words. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "core/status.h"
+#include "field/mesh/complex.h"
+#include "field/regge/regge.h"
+
+enum { LIST_SIZE = 320 };
+
+/* List the lengths of a face's edges. */
+static void list_lengths(int n, const double *length, int k, const int *corner, const int *vertex,
+                         char *list)
+{
+  list[0] = '\0';
+  for (int a = 0; a <= k; a++)
+    for (int b = a + 1; b <= k; b++) {
+      const size_t at = strlen(list);
+      (void)snprintf(list + at, LIST_SIZE - at, "%s%.6g (%d %d)", at > 0 ? ", " : "",
+                     length[dvi__pair(n, corner[a], corner[b])], vertex[corner[a]],
+                     vertex[corner[b]]);
+    }
+}
+
+static dvi_status refuse_face(const dvi_regge *r, int64_t cell, const double *length, int k,
+                              const int *corner)
+{
+  const int *vertex = r->mesh->corner[r->n] + cell * (r->n + 1);
+  int found[DVI__CORNERS_OF_SIMPLEX];
+  char list[LIST_SIZE];
+  for (int i = 0; i <= k; i++) found[i] = vertex[corner[i]];
+  const int64_t face = k < r->n ? dvi__complex_find(r->mesh, k, found) : cell;
+  const dvi__cell_name name = dvi__name_cell(r->mesh, k, face);
+  list_lengths(r->n, length, k, corner, vertex, list);
+  if (k == 2)
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "regge: %s does not exist with the lengths %s: each side must be shorter than "
+                     "the two others together",
+                     name.text, list);
+  return dvi__fail(DVI_BAD_ARGUMENT,
+                   "regge: %s does not exist in Euclidean space with the lengths %s, although its "
+                   "faces do: its volume would not be above 0",
+                   name.text, list);
+}
+
+/* Find the face of lowest dimension that does not exist. */
+static dvi_status refuse_cell(const dvi_regge *r, int64_t cell, const double *length)
+{
+  for (int k = 2; k <= r->n; k++)
+    for (unsigned set = 0; set < 1U << (r->n + 1); set++) {
+      int corner[DVI__CORNERS_OF_SIMPLEX], count = 0;
+      for (int i = 0; i <= r->n; i++)
+        if (set >> i & 1) corner[count++] = i;
+      if (count == k + 1 && !dvi__face_exists(r->n, length, k, corner))
+        return refuse_face(r, cell, length, k, corner);
+    }
+  const dvi__cell_name name = dvi__name_cell(r->mesh, r->n, cell);
+  return dvi__fail(DVI_BAD_ARGUMENT, "regge: %s has no volume", name.text);
+}
+
+static dvi_status refuse_length(const dvi_regge *r, int64_t edge, double length)
+{
+  const dvi__cell_name name = dvi__name_cell(r->mesh, 1, edge);
+  return dvi__fail(DVI_BAD_ARGUMENT,
+                   "regge: %s has the length %g, and lengths are positive numbers: squares of "
+                   "lengths below 0, as of Lorentzian signature, are not possible",
+                   name.text, length);
+}
+
+dvi_status dvi__regge_measure_cell(const dvi_regge *r, const double *length, int64_t cell,
+                                   dvi__measured_simplex *simplex)
+{
+  const int *edge = r->edge + cell * r->pairs;
+  double own[DVI__PAIRS];
+  for (int e = 0; e < r->pairs; e++) {
+    own[e] = length[edge[e]];
+    if (!(own[e] > 0) || !isfinite(own[e])) return refuse_length(r, edge[e], own[e]);
+  }
+  return dvi__simplex_measure(r->n, own, simplex) ? DVI_OK : refuse_cell(r, cell, own);
+}
