@@ -19,7 +19,7 @@ static solid_case random_case(int n, int law, unsigned traits, unsigned long lon
 static void random_shift(const quad_solid *s, int cell, double size, unsigned long long *seed,
                          quad *u)
 {
-  quad H[9];
+  quad H[9] = {0};
   for (int i = 0; i < s->n * s->n; i++) H[i] = size * (2 * random_number(seed) - 1);
   for (int a = 0; a <= s->n; a++)
     for (int i = 0; i < s->n; i++) {
@@ -100,7 +100,7 @@ START_TEST(small_displacements_keep_their_digits)
     tested_solid s = make_solid(&of, NULL, 0);
     const int numbers = (of.n + 1) * of.n;
     for (int cell = 0; cell < s.judge.cells; cell++) {
-      quad u[NUMBERS], exact[NUMBERS];
+      quad u[NUMBERS] = {0}, exact[NUMBERS];
       double at[NUMBERS], f[NUMBERS], size = 0;
       random_shift(&s.judge, cell, 1e-9, &seed, u);
       for (int k = 0; k < numbers; k++) at[k] = (double)u[k];
@@ -124,7 +124,7 @@ START_TEST(inverted_cells_are_seen)
     tested_solid s = make_solid(&of, NULL, 0);
     const int is_logarithm = i % LAWS >= DVI_ELASTIC_NEO_HOOKEAN;
     for (int cell = 0; cell < s.judge.cells; cell++) {
-      quad u[NUMBERS], f[NUMBERS];
+      quad u[NUMBERS] = {0}, f[NUMBERS];
       double at[NUMBERS], force[NUMBERS], energy;
       random_shift(&s.judge, cell, 1.5, &seed, u);
       for (int k = 0; k < NUMBERS; k++) at[k] = (double)u[k];
@@ -143,7 +143,7 @@ START_TEST(loads_and_displacements_are_those_declared)
   for (int n = 2; n <= 3; n++) {
     const solid_case of = random_case(n, DVI_ELASTIC_SVK, SOLID_LOADED | SOLID_MOVED, 5);
     tested_solid s = make_solid(&of, NULL, 0);
-    quad u[81] = {0}, v[81] = {0}, a[81];
+    quad u[81] = {0}, v[81] = {0}, a[81] = {0};
     double given[81] = {0}, rate[81] = {0}, f[81] = {0};
     quad_solid_give(&s.judge, 0.75, u, v);
     for (int i = 0; i < s.judge.size; i += n)
