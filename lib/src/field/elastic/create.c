@@ -5,7 +5,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "field/elastic/cell.h"
+#include "field/elastic/system.h"
 #include "field/mesh/volume.h"
 
 /* ---- cells ---- */
@@ -88,6 +88,7 @@ void dvi_elastic_destroy(dvi_elastic **elastic)
 {
   if (elastic == NULL || *elastic == NULL) return;
   dvi_elastic *e = *elastic;
+  dvi__solid_system_destroy(&e->system);
   for (int i = 0; i < e->obstacles; i++) dvi__release((void *)e->obstacle[i].name);
   for (int i = 0; i < e->load_count; i++) dvi__release((void *)e->loads[i].part);
   for (int i = 0; i < e->condition_count; i++) dvi__release((void *)e->conditions[i].part);

@@ -50,6 +50,7 @@ struct dvi_elastic {
   int obstacles;
   int8_t *is_outer; /* [vertices] not 0 at the boundary */
   int is_split;
+  _Atomic double fastest;           /* bound of the frequencies at rest, 0 until it is asked for */
   struct dvi__solid_system *system; /* what its mechanical system needs, made when asked for */
 };
 
