@@ -5,7 +5,7 @@
 #include "field/elastic/elastic.h"
 #include "support/meshes.h"
 #include "support/solid/quad_avi.h"
-#include "support/solid/solids.h"
+#include "support/solid/judged_solids.h"
 #include "support/suite.h"
 
 enum { LAWS = 4, NUMBERS = 12 };
@@ -30,7 +30,7 @@ static void random_shift(const quad_solid *s, int cell, double size, unsigned lo
     }
 }
 
-static void check_cell(const tested_solid *s, int cell, const quad *u, const char *name)
+static void check_cell(const judged_solid *s, int cell, const quad *u, const char *name)
 {
   const int numbers = (s->judge.n + 1) * s->judge.n;
   double at[NUMBERS], f[NUMBERS], energy = 0, size = 0;
@@ -48,7 +48,7 @@ static void check_cell(const tested_solid *s, int cell, const quad *u, const cha
                 name, cell, energy, (double)stored);
 }
 
-static void check_stiffness(const tested_solid *s, int cell, quad *u, const char *name)
+static void check_stiffness(const judged_solid *s, int cell, quad *u, const char *name)
 {
   const int numbers = (s->judge.n + 1) * s->judge.n;
   const quad h = 1e-12; /* differences have errors of some 1e-24 */
@@ -76,7 +76,7 @@ START_TEST(forces_energies_and_stiffnesses_are_those_of_the_laws)
   unsigned long long seed = 7;
   for (int i = 0; i < 2 * LAWS; i++) {
     const solid_case of = random_case(2 + i / LAWS, i % LAWS, SOLID_OF_TWO, (unsigned)i + 1);
-    tested_solid s = make_solid(&of, NULL, 0);
+    judged_solid s = make_judged(&of, NULL, 0);
     for (int cell = 0; cell < s.judge.cells; cell++) {
       quad u[NUMBERS];
       random_shift(&s.judge, cell, 0.25, &seed, u);
@@ -85,7 +85,7 @@ START_TEST(forces_energies_and_stiffnesses_are_those_of_the_laws)
     }
     for (int a = 0; a < s.judge.vertices; a++)
       ck_assert_double_eq_tol(dvi_elastic_masses(s.elastic)[a], (double)s.judge.mass[a], 1e-15);
-    end_solid(&s);
+    end_judged_solid(&s);
   }
 }
 END_TEST
@@ -97,7 +97,7 @@ START_TEST(small_displacements_keep_their_digits)
   unsigned long long seed = 11;
   for (int i = 0; i < 2 * LAWS; i++) {
     const solid_case of = random_case(2 + i / LAWS, i % LAWS, 0, (unsigned)i + 1);
-    tested_solid s = make_solid(&of, NULL, 0);
+    judged_solid s = make_judged(&of, NULL, 0);
     const int numbers = (of.n + 1) * of.n;
     for (int cell = 0; cell < s.judge.cells; cell++) {
       quad u[NUMBERS] = {0}, exact[NUMBERS];
@@ -110,7 +110,7 @@ START_TEST(small_displacements_keep_their_digits)
       ck_assert_msg(error_of_solid(numbers, f, exact) < 1e-13 * size, "%s: cell %d: %g of %g",
                     name_solid(&of), cell, error_of_solid(numbers, f, exact), size);
     }
-    end_solid(&s);
+    end_judged_solid(&s);
   }
 }
 END_TEST
@@ -121,7 +121,7 @@ START_TEST(inverted_cells_are_seen)
   unsigned long long seed = 13;
   for (int i = 0; i < 2 * LAWS; i++) {
     const solid_case of = random_case(2 + i / LAWS, i % LAWS, 0, (unsigned)i + 1);
-    tested_solid s = make_solid(&of, NULL, 0);
+    judged_solid s = make_judged(&of, NULL, 0);
     const int is_logarithm = i % LAWS >= DVI_ELASTIC_NEO_HOOKEAN;
     for (int cell = 0; cell < s.judge.cells; cell++) {
       quad u[NUMBERS] = {0}, f[NUMBERS];
@@ -133,7 +133,7 @@ START_TEST(inverted_cells_are_seen)
       ck_assert_int_eq(dvi__solid_force(s.elastic, cell, at, force) > 0, is_inverted);
       ck_assert_int_eq(dvi__solid_stored(s.elastic, cell, at, &energy) > 0, is_inverted);
     }
-    end_solid(&s);
+    end_judged_solid(&s);
   }
 }
 END_TEST
@@ -142,7 +142,7 @@ START_TEST(loads_and_displacements_are_those_declared)
 {
   for (int n = 2; n <= 3; n++) {
     const solid_case of = random_case(n, DVI_ELASTIC_SVK, SOLID_LOADED | SOLID_MOVED, 5);
-    tested_solid s = make_solid(&of, NULL, 0);
+    judged_solid s = make_judged(&of, NULL, 0);
     quad u[81] = {0}, v[81] = {0}, a[81] = {0};
     double given[81] = {0}, rate[81] = {0}, f[81] = {0};
     quad_solid_give(&s.judge, 0.75, u, v);
@@ -167,7 +167,7 @@ START_TEST(loads_and_displacements_are_those_declared)
     for (int i = 0; i < s.judge.size; i++)
       ck_assert_double_eq_tol(f[i], (double)(a[i] * s.judge.mass[i / n]), 1e-15);
     free(free_one.given);
-    end_solid(&s);
+    end_judged_solid(&s);
   }
 }
 END_TEST
@@ -176,14 +176,14 @@ START_TEST(largest_eigenvalues_are_those_of_the_cells)
 {
   for (int n = 2; n <= 3; n++) {
     const solid_case of = random_case(n, DVI_ELASTIC_MOONEY_RIVLIN, SOLID_OF_TWO | SOLID_MOVED, 9);
-    tested_solid s = make_solid(&of, NULL, 0);
+    judged_solid s = make_judged(&of, NULL, 0);
     for (int cell = 0; cell < s.judge.cells; cell++) {
       double lambda = 0;
       ck_assert_int_eq(dvi__solid_largest(s.elastic, cell, &lambda), DVI_OK);
       ck_assert_double_eq_tol(2 / sqrt(lambda), quad_solid_bound(&s.judge, cell),
                               1e-12 * quad_solid_bound(&s.judge, cell));
     }
-    end_solid(&s);
+    end_judged_solid(&s);
   }
 }
 END_TEST

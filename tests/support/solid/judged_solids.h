@@ -1,6 +1,6 @@
 /* Solids for tests, each with its judge. */
-#ifndef SUPPORT_SOLID_SOLIDS_H
-#define SUPPORT_SOLID_SOLIDS_H
+#ifndef SUPPORT_SOLID_JUDGED_SOLIDS_H
+#define SUPPORT_SOLID_JUDGED_SOLIDS_H
 #include "support/solid/quad_solid.h"
 
 /* What a solid has beside a material. */
@@ -22,21 +22,21 @@ typedef struct solid_case {
 
 /* A mesh has the parts "soft" (cells), "left" (X = 0), "right" (X = 1) and "bottom" (the last
  * coordinate is 0). */
-typedef struct tested_solid {
+typedef struct judged_solid {
   dvi_mesh *mesh;
   dvi_elastic_material material[2];
   dvi_elastic *elastic;
   quad_solid judge;
-} tested_solid;
+} judged_solid;
 
-tested_solid make_solid(const solid_case *of, const dvi_obstacle *obstacle, int obstacles);
-void end_solid(tested_solid *s);
+judged_solid make_judged(const solid_case *of, const dvi_obstacle *obstacle, int obstacles);
+void end_judged_solid(judged_solid *s);
 
 /* Words for messages. They are valid until the next call. */
 const char *name_solid(const solid_case *of);
 
 /* Set u [size] to 0 and v to `size` times a turning start, both with what is given at t = 0. */
-void start_solid(const tested_solid *s, double size, quad *u, quad *v);
+void start_judged(const judged_solid *s, double size, quad *u, quad *v);
 
 /* Round [count] numbers to doubles, for free(). */
 double *rounded(int count, const quad *x);

@@ -1,4 +1,4 @@
-#include "support/solid/solids.h"
+#include "support/solid/judged_solids.h"
 
 #include <check.h>
 #include <math.h>
@@ -163,10 +163,10 @@ static dvi_elastic_material material_of(const solid_case *of, const char *part,
   return m;
 }
 
-tested_solid make_solid(const solid_case *of, const dvi_obstacle *obstacle, int obstacles)
+judged_solid make_judged(const solid_case *of, const dvi_obstacle *obstacle, int obstacles)
 {
   unsigned long long seed = of->seed;
-  tested_solid s = {.mesh = mesh_of_case(of, &seed)};
+  judged_solid s = {.mesh = mesh_of_case(of, &seed)};
   int *n = &dimension[of->n];
   const dvi_elastic_condition condition[] = {
       {.part = "left", .displacement = swing, .user = n},
@@ -193,7 +193,7 @@ tested_solid make_solid(const solid_case *of, const dvi_obstacle *obstacle, int 
   return s;
 }
 
-void end_solid(tested_solid *s)
+void end_judged_solid(judged_solid *s)
 {
   dvi_elastic_destroy(&s->elastic);
   quad_solid_clear(&s->judge);
@@ -213,7 +213,7 @@ const char *name_solid(const solid_case *of)
   return text;
 }
 
-void start_solid(const tested_solid *s, double size, quad *u, quad *v)
+void start_judged(const judged_solid *s, double size, quad *u, quad *v)
 {
   turning_start(&s->judge, size, u, v);
   quad_solid_give(&s->judge, 0, u, v);
