@@ -194,7 +194,7 @@ int dvi__solid_gather_unknowns(const dvi_elastic *e, int64_t cell, double t, con
     }
     if (!is_driven) continue;
     const int returned = dvi__solid_given(e, vertex[a], t, u + a * n, NULL);
-    if (returned != 0) return returned;
+    if (returned != 0) return -abs(returned);
   }
   return 0;
 }

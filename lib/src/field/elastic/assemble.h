@@ -18,8 +18,8 @@ void dvi__solid_pattern_clear(dvi__solid_pattern *pattern);
 void dvi__solid_add_matrix(const dvi_elastic *e, const dvi__solid_pattern *pattern, int64_t cell,
                            const double *K, double *value);
 
-/* Give displacements [(n+1)*n] of a cell's nodes at coordinates q and time t. Returns as
- * dvi__solid_given. */
+/* Give displacements [(n+1)*n] of a cell's nodes at coordinates q and time t. Returns 0, or a
+ * negative number of a condition. */
 int dvi__solid_gather_unknowns(const dvi_elastic *e, int64_t cell, double t, const double *q,
                                double *u);
 
