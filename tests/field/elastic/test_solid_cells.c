@@ -188,8 +188,48 @@ START_TEST(largest_eigenvalues_are_those_of_the_cells)
 }
 END_TEST
 
+/* Rayleigh's quotients of powers come from below, and their errors are squares of those of the
+ * vectors. */
+static double frequency_of(const quad_solid *s)
+{
+  unsigned long long seed = 21;
+  quad u[81] = {0}, none[81] = {0}, a[81] = {0}, quotient = 0;
+  for (int i = 0; i < s->size; i++) u[i] = s->given[i] ? 0 : random_number(&seed) - 0.5;
+  for (int round = 0; round < 400; round++) {
+    quad norm = 0;
+    quotient = 0;
+    quad_solid_accelerate(s, 0, u, none, a);
+    for (int i = 0; i < s->size; i++) {
+      quotient -= s->mass[i / s->n] * u[i] * a[i];
+      norm += s->mass[i / s->n] * u[i] * u[i];
+    }
+    quotient /= norm;
+    for (int i = 0; i < s->size; i++) u[i] = a[i] / quotient;
+  }
+  return sqrt((double)quotient);
+}
+
+START_TEST(fastest_frequencies_are_bounded_closely)
+{
+  for (int i = 0; i < 8; i++) {
+    const solid_case of = random_case(2 + i % 2, DVI_ELASTIC_LINEAR,
+                                      SOLID_OF_TWO | (i > 3 ? SOLID_MOVED : 0), (unsigned)i + 1);
+    judged_solid s = make_judged(&of, NULL, 0);
+    double omega = 0;
+    quad_solid judge = s.judge;
+    judge.loads = 0;
+    ck_assert_int_eq(dvi_elastic_fastest(s.elastic, &omega), DVI_OK);
+    const double below = frequency_of(&judge);
+    ck_assert_msg(omega >= below * (1 - 1e-12) && omega < below * 1.002, "%s: %g, not %g",
+                  name_solid(&of), omega, below);
+    end_judged_solid(&s);
+  }
+}
+END_TEST
+
 SUITE(solid_cells)
 {
+  tcase_add_test(tests, fastest_frequencies_are_bounded_closely);
   tcase_add_test(tests, forces_energies_and_stiffnesses_are_those_of_the_laws);
   tcase_add_test(tests, small_displacements_keep_their_digits);
   tcase_add_test(tests, inverted_cells_are_seen);
