@@ -94,7 +94,6 @@ quad_avi quad_avi_of(const quad_solid *s, const double *step, quad t, const quad
   const size_t size = (size_t)s->size, cells = (size_t)s->cells;
   avi.step = room_for(cells, sizeof *avi.step);
   avi.count = room_for(cells, sizeof *avi.count);
-  avi.force = room_for(cells * NUMBERS, sizeof *avi.force);
   avi.u = room_for(size, sizeof *avi.u);
   avi.v = room_for(size, sizeof *avi.v);
   avi.clock = room_for((size_t)s->vertices, sizeof *avi.clock);
@@ -108,7 +107,7 @@ quad_avi quad_avi_of(const quad_solid *s, const double *step, quad t, const quad
 
 void quad_avi_clear(quad_avi *avi)
 {
-  free(avi->step), free(avi->count), free(avi->force);
+  free(avi->step), free(avi->count);
   free(avi->u), free(avi->v), free(avi->clock);
   *avi = (quad_avi){0};
 }
@@ -163,10 +162,9 @@ static void add_loads(const quad_avi *avi, int cell, quad t, quad *f)
   }
 }
 
-static void kick(const quad_avi *avi, int cell, quad span, quad *v)
+static void kick(const quad_avi *avi, int cell, const quad *f, quad span, quad *v)
 {
   const quad_solid *s = avi->s;
-  const quad *f = avi->force + cell * NUMBERS;
   for (int a = 0; a <= s->n; a++) {
     const int node = s->vertex[cell * (s->n + 1) + a];
     for (int j = 0; j < s->n; j++)
@@ -174,20 +172,29 @@ static void kick(const quad_avi *avi, int cell, quad span, quad *v)
   }
 }
 
+/* Set f to the forces of a cell at displacements u of all nodes, with its loads. */
+static void pull(const quad_avi *avi, int cell, quad t, const quad *u, quad *f)
+{
+  const quad_solid *s = avi->s;
+  quad own[NUMBERS] = {0};
+  for (int k = 0; k < (s->n + 1) * s->n; k++)
+    own[k] = u[s->vertex[cell * (s->n + 1) + k / s->n] * s->n + k % s->n];
+  (void)quad_solid_cell(s, cell, 0, own, f);
+  add_loads(avi, cell, t, f);
+}
+
 static void act(quad_avi *avi, int cell)
 {
   const quad_solid *s = avi->s;
   const quad t = time_of(avi, cell);
-  quad own[NUMBERS];
+  quad f[NUMBERS] = {0};
   for (int a = 0; a <= s->n; a++) {
     const int node = s->vertex[cell * (s->n + 1) + a];
     pass(avi, node, t, avi->u, avi->v);
     avi->clock[node] = t;
-    for (int j = 0; j < s->n; j++) own[a * s->n + j] = avi->u[node * s->n + j];
   }
-  (void)quad_solid_cell(s, cell, 0, own, avi->force + cell * NUMBERS);
-  add_loads(avi, cell, t, avi->force + cell * NUMBERS);
-  kick(avi, cell, (quad)avi->step[cell] / (avi->count[cell] == 0 ? 2 : 1), avi->v);
+  pull(avi, cell, t, avi->u, f);
+  kick(avi, cell, f, (quad)avi->step[cell] / (avi->count[cell] == 0 ? 2 : 1), avi->v);
   avi->count[cell]++;
   avi->events++;
 }
@@ -204,8 +211,10 @@ void quad_avi_advance(quad_avi *avi, quad t, quad *u, quad *v)
   while (!(quad_avi_next(avi) > t)) quad_avi_event(avi);
   for (int node = 0; node < avi->s->vertices; node++) pass(avi, node, t, u, v);
   for (int cell = 0; cell < avi->s->cells; cell++) {
+    quad f[NUMBERS] = {0};
     if (isinf(avi->step[cell])) continue;
     const quad step = avi->step[cell], since = t - (time_of(avi, cell) - step);
-    kick(avi, cell, since - step / 2, v);
+    pull(avi, cell, t, u, f);
+    kick(avi, cell, f, since - step / 2, v);
   }
 }

@@ -13,7 +13,6 @@ typedef struct quad_avi {
   const quad_solid *s;
   double *step;       /* [cells] */
   long *count;        /* [cells] events so far */
-  quad *force;        /* [cells*(n+1)*n] of the last event, with loads */
   quad start, *u, *v; /* [size] */
   quad *clock;        /* [vertices] times of the last events */
   long events;
@@ -38,7 +37,7 @@ quad quad_avi_next(const quad_avi *avi);
 void quad_avi_event(quad_avi *avi);
 
 /* Let all events before a time and at it happen, and give u and v there: u goes on with v, and v
- * has of each cell as much of its last kick as belongs to the time until then. */
+ * gets of each cell what its last kick lacks of the time until then, by the forces at that u. */
 void quad_avi_advance(quad_avi *avi, quad t, quad *u, quad *v);
 
 #endif
