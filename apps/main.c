@@ -15,13 +15,28 @@ typedef struct subcommand {
 } subcommand;
 
 static const subcommand subcommands[] = {
-    {"list", list_command},           {"explain", explain_command},     {"run", run_command},
-    {"order", order_command},         {"bench", bench_command},         {"path", path_command},
-    {"control", control_command},     {"gradient", gradient_command},   {"fit", fit_command},
-    {"check", check_command},         {"init", init_command},           {"sweep", sweep_command},
-    {"resonance", resonance_command}, {"emit-c", emit_c_command},       {"mesh", mesh_command},
-    {"modes", modes_command},         {"stability", stability_command}, {"solve", solve_command},
-    {"spectrum", spectrum_command},   {"plot", plot_command},           {NULL, NULL},
+    {"list", list_command},
+    {"explain", explain_command},
+    {"run", run_command},
+    {"order", order_command},
+    {"bench", bench_command},
+    {"path", path_command},
+    {"control", control_command},
+    {"gradient", gradient_command},
+    {"fit", fit_command},
+    {"check", check_command},
+    {"init", init_command},
+    {"sweep", sweep_command},
+    {"resonance", resonance_command},
+    {"emit-c", emit_c_command},
+    {"mesh", mesh_command},
+    {"modes", modes_command},
+    {"stability", stability_command},
+    {"solve", solve_command},
+    {"spectrum", spectrum_command},
+    {"plot", plot_command},
+    {"regge", regge_command},
+    {NULL, NULL},
 };
 
 static const char help[] =
@@ -53,6 +68,8 @@ static const char help[] =
     "  fit SCENE.yaml ...      fit parameters and the start of a run to measurements\n"
     "  mesh FILE|GENERATOR ... audit a mesh: counts, holes, quality, dual cells, stable steps; "
     "repair it\n"
+    "  regge FILE|GENERATOR    action, deficits and stationary lengths of a complex (Regge "
+    "calculus)\n"
     "  modes SCENE.yaml ...    the modes of a field on a mesh: eigenvalues, frequencies, shapes\n"
     "  stability SCENE.yaml    how fast a field grows under asynchronous steps, before a run\n"
     "  solve SCENE.yaml ...    the static state of a field on a mesh\n"

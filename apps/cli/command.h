@@ -27,6 +27,7 @@ int sweep_command(int argc, char **argv);
 int resonance_command(int argc, char **argv);
 int emit_c_command(int argc, char **argv);
 int mesh_command(int argc, char **argv);
+int regge_command(int argc, char **argv);
 int modes_command(int argc, char **argv);
 int stability_command(int argc, char **argv);
 int solve_command(int argc, char **argv);

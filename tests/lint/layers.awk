@@ -66,6 +66,7 @@ BEGIN {
   sees["field/elastic"] = "core num field/algebra field/mesh"
   sees["field/rotations"] = "core field/algebra"
   sees["field/regge"] = "core num field/algebra field/mesh"
+  sees["field/connection"] = "core num field/algebra field/mesh field/forms field/regge"
   # The library of scenes includes libdvi's public headers, too.
   sees["text"] = ""
   sees["expr"] = "text"

@@ -6,6 +6,7 @@
 #include <dvi/basis.h>
 #include <dvi/contact.h>
 #include <dvi/control.h>
+#include <dvi/curvature.h>
 #include <dvi/density.h>
 #include <dvi/diagnostics.h>
 #include <dvi/elastic.h>

@@ -51,13 +51,14 @@ typedef struct dvi_regge_report {
   double residual;  /**< largest |dS/dl_e| of a length that is not held */
   double action;    /**< S at the end */
   int64_t unknowns; /**< lengths that are not held */
-  /** Directions of the unknowns in which the gradient does not change, up to 1e-8 of the Hessian's
-   *  largest entry. Near flat solutions they are the moves of inner vertices, n for each. No step
-   *  goes along them, which is how the gauge is fixed */
+  /** Directions of the unknowns along which the gradient does not change. Near flat solutions they
+   *  are the moves of inner vertices, n for each. No step goes along them, which is how the gauge is
+   *  fixed */
   int64_t null_directions;
-  /** least |eigenvalue| of the Hessian in all other directions, over its largest entry. 0 if there
-   *  is no other direction. A small one tells of a broken gauge freedom */
-  double gap;
+  /** sum of delta^2/(lambda^2 + delta^2) over the Hessian's eigenvalues lambda, with delta 1e-7 of its
+   *  largest entry. Rounded it is null_directions. If it is not near a whole number, the gauge
+   *  freedom is broken a little, and some directions are determined poorly */
+  double softness;
 } dvi_regge_report;
 
 /** A universe whose spatial sections are all alike. Zero means the default. */
