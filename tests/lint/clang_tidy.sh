@@ -1,11 +1,11 @@
 #!/bin/sh
 # Runs clang-tidy over the library, the command, the problems and the examples, with the checks of
-# .clang-tidy. It looks at a source if the source, a header of ours that it includes or the checks
-# have changed since the commit that the file `analyzed` beside this script names, and if they have
-# not passed in this build folder since. Without history, or without that commit in it, it looks at
-# every source. With DVI_ANALYZE=record it writes the commit into that file if all sources pass and
-# none differs from the commit, for then all sources have passed; to be committed. DVI_ANALYZE=all
-# does the same, and looks at every source (`sh cmake/bootstrap.sh long` does that).
+# .clang-tidy. A source that has passed is not looked at again until it, a header of ours that it
+# includes, the checks or the tool change. The key of a source is a checksum of all these. Keys
+# that have passed stand in the build folder, and in the file `analyzed` beside this script.
+# With DVI_ANALYZE=record the keys of all sources are written into that file if all of them pass, to
+# be committed. DVI_ANALYZE=all looks at every source before that (`sh cmake/bootstrap.sh long` does
+# so).
 # Usage: clang_tidy.sh TOP BUILD CLANG_TIDY C_COMPILER
 set -u
 
@@ -65,35 +65,24 @@ xargs "$compiler" -MM -MG -I lib/include -I lib/src -I apps -I apps/problems <"$
   exit 1
 }
 
-# $work/changed lists the files that changed since all sources last passed. It does not exist
-# without history.
-base=$(cat tests/lint/analyzed)
-git merge-base --is-ancestor "$base" HEAD 2>/dev/null || base=
-case ${DVI_ANALYZE:-} in
-  all) base=; rm -f "$build"/analyzed/* ;;
-esac
-if [ -n "$base" ]; then
-  { git diff --name-only "$base"; git ls-files --others --exclude-standard; } >"$work/changed"
+if [ "${DVI_ANALYZE:-}" = all ]; then
+  rm -f "$build"/analyzed/*
+  passed=/dev/null
+else
+  passed=tests/lint/analyzed
 fi
 
-# is_changed FILE...: succeed if one of the files changed, or the checks did.
-is_changed() {
-  [ -n "$base" ] || return 0
-  printf '%s\n' .clang-tidy tests/lint/analyzer.h tests/lint/analyzer_scene.h \
-    tests/lint/clang_tidy.sh "$@" |
-    grep -q -x -F -f "$work/changed"
-}
-
-checks=$({ "$tool" --version; cat .clang-tidy tests/lint/analyzer*.h "$0"; } | cksum)
+checks=$({ "$tool" --version | grep -o "version [0-9.]*"; cat .clang-tidy tests/lint/analyzer*.h "$0"; } |
+  cksum)
 while read -r parts; do
   # The list is meant to be split into words.
   # shellcheck disable=SC2086
   key=$({ echo "$checks $parts"; cat $parts 2>/dev/null; } | cksum | tr -c '0-9\n' '-')
-  [ ! -e "$build/analyzed/$key" ] || continue
-  # shellcheck disable=SC2086
-  is_changed $parts || continue
   echo "$key ${parts%% *}"
-done <"$work/parts" >"$work/todo"
+done <"$work/parts" >"$work/keys"
+LC_ALL=C grep -v -x -F -f "$passed" "$work/keys" | while read -r key file; do
+  [ -e "$build/analyzed/$key" ] || echo "$key $file"
+done >"$work/todo"
 
 echo "clang-tidy looks at $(wc -l <"$work/todo") of $(wc -l <"$work/sources") sources"
 if [ -s "$work/todo" ]; then
@@ -101,9 +90,9 @@ if [ -s "$work/todo" ]; then
 fi
 case ${DVI_ANALYZE:-} in
   all | record)
-    if [ $rc -eq 0 ] && git diff --quiet HEAD -- lib apps .clang-tidy tests/lint; then
-      git rev-parse HEAD >tests/lint/analyzed
-      echo "tests/lint/analyzed names this commit now; please commit it"
+    if [ $rc -eq 0 ]; then
+      cp "$work/keys" tests/lint/analyzed
+      echo "tests/lint/analyzed has the keys of all sources now; please commit it"
     fi
     ;;
 esac

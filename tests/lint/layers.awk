@@ -63,6 +63,8 @@ BEGIN {
   sees["field/schroedinger"] = "core num solve march field/algebra field/space field/density"
   sees["field/multisymplectic"] = "core num march field/algebra"
   sees["field/moving"] = "core num field/mesh field/space"
+  sees["field/elastic"] = "core num field/algebra field/mesh"
+  sees["field/elastic_avi"] = sees["field/step"] " field/step field/elastic"
   sees["field/rotations"] = "core field/algebra"
   sees["field/regge"] = "core num field/algebra field/mesh"
   sees["field/connection"] = "core num field/algebra field/mesh field/forms field/regge"

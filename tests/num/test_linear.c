@@ -307,6 +307,34 @@ START_TEST(the_first_factor_has_the_bits_of_any_other)
 }
 END_TEST
 
+/* With the diagonal d_j = 1e3 + i j and entries 1e3 beside it, the determinants of the leading
+ * matrices are D_j = d_j D_(j-1) - 1e6 D_(j-2). All are computed in units of 1e3. */
+START_TEST(complex_determinants_have_their_logarithm)
+{
+  static double a[LARGEST * LARGEST], values[2 * LARGEST * LARGEST];
+  double before[2] = {0, 0}, last[2] = {1, 0};
+  matrix m;
+  random_band(LARGEST, 1, 3, a);
+  compress(LARGEST, a, &m);
+  for (int j = 0; j < LARGEST; j++) {
+    const double tilt = 1e-3 * j, next[2] = {last[0] - tilt * last[1] - before[0],
+                                             last[1] + tilt * last[0] - before[1]};
+    memcpy(before, last, sizeof last);
+    memcpy(last, next, sizeof last);
+    for (int e = m.pattern.start[j]; e < m.pattern.start[j + 1]; e++) {
+      values[2 * e] = 1e3;
+      values[2 * e + 1] = m.pattern.row[e] == j ? j : 0;
+    }
+  }
+  dvi__linear *linear = make(&m, DVI__LINEAR_COMPLEX, NULL);
+  ck_assert_int_eq(dvi__linear_factor(linear, values), DVI_OK);
+  ck_assert_double_eq_tol(dvi__linear_log_determinant(linear),
+                          LARGEST * log(1e3) + log(hypot(last[0], last[1])), 1e-10);
+  dvi__linear_destroy(&linear);
+  dvi__pattern_clear(&m.pattern);
+}
+END_TEST
+
 /* (4 + i) x_j + x_(j+1) + x_(j-1) with x_j = 1 + i j. */
 START_TEST(complex_systems_are_solved_in_pairs)
 {
@@ -378,6 +406,7 @@ SUITE(linear)
   tcase_add_test(tests, an_analysis_tells_what_a_factor_costs);
   tcase_add_loop_test(tests, the_first_factor_has_the_bits_of_any_other, 0, 2);
   tcase_add_test(tests, complex_systems_are_solved_in_pairs);
+  tcase_add_test(tests, complex_determinants_have_their_logarithm);
   tcase_add_loop_test(tests, entries_that_are_always_zero_do_no_harm, 0, 2);
   tcase_add_loop_test(tests, what_is_not_square_is_refused, 0, 2);
 }

@@ -9,6 +9,7 @@
 #include <dvi/curvature.h>
 #include <dvi/density.h>
 #include <dvi/diagnostics.h>
+#include <dvi/elastic.h>
 #include <dvi/ensemble.h>
 #include <dvi/field.h>
 #include <dvi/forms.h>

@@ -5,11 +5,11 @@
  *
  *      S = sum_h |h| eps_h - Lambda V,    dS/dl_e = sum_h eps_h d|h|/dl_e - Lambda dV/dl_e,
  *
- *  where |h| is the volume of hinge h, the deficit eps_h is 2 pi less the dihedral angles at h, and V
- *  is the volume of all simplices. At hinges of the boundary pi stands for 2 pi (Hartle and Sorkin
- *  1981). S is the value of 1/2 int (R - 2 Lambda). The changes of the angles drop out of dS/dl_e,
- *  because sum_h |h| d eps_h = 0 (Schlaefli's identity; Regge 1961). Signature is Euclidean, but for
- *  dvi_regge_universe. docs/fields/regge.md has more. */
+ *  where |h| is the volume of hinge h, the deficit eps_h is 2 pi less the dihedral angles at h,
+ *  and V is the volume of all simplices. At hinges of the boundary pi stands for 2 pi (Hartle and
+ *  Sorkin 1981). S is the value of 1/2 int (R - 2 Lambda). The changes of the angles drop out of
+ *  dS/dl_e, because sum_h |h| d eps_h = 0 (Schlaefli's identity; Regge 1961). Signature is
+ *  Euclidean, but for dvi_regge_universe. docs/fields/regge.md has more. */
 #ifndef DVI_REGGE_H
 #define DVI_REGGE_H
 #include <dvi/mesh.h>
@@ -32,8 +32,8 @@ typedef struct dvi_regge_measures {
   int64_t hinges, boundary_hinges; /**< all, and those of the boundary */
   double deficit_min, deficit_max; /**< of inner hinges. 0 if there is none */
   double gradient_max;             /**< largest |dS/dl_e| of edges off the boundary */
-  /** largest |sum_h |h| d eps_h/dl_e| of an edge, divided by the sum of the terms' sizes, which is 0
-   *  but for roundings */
+  /** largest |sum_h |h| d eps_h/dl_e| of an edge, divided by the sum of the terms' sizes, which is
+   *  0 but for roundings */
   double schlaefli;
   double length_min, length_max;
 } dvi_regge_measures;
@@ -52,11 +52,12 @@ typedef struct dvi_regge_report {
   double action;    /**< S at the end */
   int64_t unknowns; /**< lengths that are not held */
   /** Directions of the unknowns along which the gradient does not change. Near flat solutions they
-   *  are the moves of inner vertices, n for each. No step goes along them, which is how the gauge is
-   *  fixed */
+   *  are the moves of inner vertices, n for each. No step goes along them, which is how the gauge
+   *  is fixed */
   int64_t null_directions;
-  /** sum of delta^2/(lambda^2 + delta^2) over the Hessian's eigenvalues lambda, with delta 1e-7 of its
-   *  largest entry. Rounded it is null_directions. If it is not near a whole number, the gauge
+  /** log2 of |det(H + 2 i delta)/det(H + i delta)| with the Hessian H of the unknowns, and delta
+   *  1e-7 of its largest entry. Null directions add 1, and others of eigenvalues lambda about
+   *  2 (delta/lambda)^2. Rounded it is null_directions. If it is not near a whole number, the gauge
    *  freedom is broken a little, and some directions are determined poorly */
   double softness;
 } dvi_regge_report;
@@ -99,9 +100,10 @@ dvi_status dvi_regge_lengths(const dvi_regge *regge, double *length);
  *  @param      length    [edges] of the mesh's edges, in their order
  *  @param[out] action    S. May be NULL
  *  @param[out] gradient  [edges] dS/dl_e. May be NULL
- *  @retval DVI_BAD_ARGUMENT  an argument is missing, a length is not positive, or lengths violate
- *                            the inequality of a triangle, a tetrahedron or a 4-simplex.
+ *  @retval DVI_BAD_ARGUMENT  an argument is missing, a length is not 1e-60 to 1e60, or lengths
+ *                            violate the inequality of a triangle, a tetrahedron or a 4-simplex.
  *                            dvi_last_error() names that simplex, its vertices and its lengths
+ *  @retval DVI_NOT_FINITE    Lambda is so large that numbers overflow
  *  @retval DVI_NO_MEMORY     there is no memory */
 dvi_status dvi_regge_action(const dvi_regge *regge, const double *length, double *action,
                             double *gradient);
@@ -130,26 +132,28 @@ dvi_status dvi_regge_measure(const dvi_regge *regge, const double *length,
 
 /** Make the action stationary in the lengths that are not held, by Newton's method with the sparse
  *  Hessian H and steps of least norm, -H (H^2 + delta^2)^{-1} dS/dl, delta = 1e-7 of H's largest
- *  entry. Steps are halved until all simplices exist and the gradient falls.
+ *  entry or more. Steps are halved until all simplices exist and the gradient falls. If no length
+ *  is held, all are first multiplied by the number that makes the action stationary.
  *
  *  @param[in]     options  NULL for the defaults
  *  @param[in,out] length   [edges] a guess, and the solution. Unchanged after a failure
  *  @param[out]    report   may be NULL. Set also if the iteration does not converge
  *  @retval DVI_BAD_ARGUMENT   as dvi_regge_action, or all lengths are held
- *  @retval DVI_NOT_CONVERGED  the gradient falls no more, or not fast enough. dvi_last_error() names
- *                             the simplex that stops it, if one does
+ *  @retval DVI_NOT_CONVERGED  the gradient falls no more, or not fast enough. dvi_last_error()
+ *                             names the simplex that stops it, if one does
  *  @retval DVI_SINGULAR       the Hessian vanishes
  *  @retval DVI_NO_MEMORY      there is no memory */
 dvi_status dvi_regge_solve(const dvi_regge *regge, const dvi_regge_options *options, double *length,
                            dvi_regge_report *report);
 
-/** Let a closed universe expand from its moment of rest. All edges of section i have the length l_i,
- *  and struts of length m join the vertices of sections i and i + 1 (Collins and Williams 1973).
+/** Let a closed universe expand from its moment of rest. All edges of section i have the length
+ *  l_i, and struts of length m join the vertices of sections i and i + 1 (Collins and Williams
+ *  1973).
  *
  *  The action S(l_i, l_{i+1}, m) of the layer, whose cells are frusta of regular tetrahedra, is a
  *  discrete Lagrangian. p_i = -D_1 S and p_{i+1} = D_2 S give the lengths from p_0 = 0 on. The
- *  struts are the lapse, which is a choice of gauge. Their equation dS/dm = 0, the constraint, holds
- *  up to errors of order 2 in m.
+ *  struts are the lapse, which is a choice of gauge. Their equation dS/dm = 0, the constraint,
+ *  holds up to errors of order 2 in m.
  *
  *  @param      regge       its mesh is the sections: closed, of tetrahedra, with equally many at
  *                          each edge, Lambda > 0

@@ -16,6 +16,9 @@ extern void dsygv_(const int *type, const char *vectors, const char *triangle, c
                    double *a, const int *lda, double *b, const int *ldb, double *lambda,
                    double *work, const int *lwork, int *info, size_t vectors_length,
                    size_t triangle_length);
+extern void dsyev_(const char *vectors, const char *triangle, const int *n, double *a,
+                   const int *lda, double *lambda, double *work, const int *lwork, int *info,
+                   size_t vectors_length, size_t triangle_length);
 extern void dgesv_(const int *n, const int *sides, double *a, const int *lda, int *pivot, double *b,
                    const int *ldb, int *info);
 
@@ -127,6 +130,14 @@ dvi_status dvi__eigen_symmetric(int n, const double *K, const double *M, double 
   dvi__release(copy);
   dvi__release(work);
   return status;
+}
+
+int dvi__symmetric_eigenvalues(int n, double *A, double *lambda, double *work)
+{
+  const int length = 8 * n;
+  int info = 0;
+  dsyev_("N", "L", &n, A, &n, lambda, work, &length, &info, 1, 1);
+  return info == 0;
 }
 
 int dvi__negative_ritz_values(int n, double *H, int lead, double next, double *work)

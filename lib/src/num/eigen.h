@@ -23,6 +23,10 @@ dvi_status dvi__eigenvalues(int n, double *T, int lead, double *real_part, doubl
  * DVI_NO_MEMORY. */
 dvi_status dvi__eigen_symmetric(int n, const double *K, const double *M, double *lambda, double *X);
 
+/* Give the ascending eigenvalues of a symmetric A [n*n], which is overwritten. work [8*n]. Returns
+ * 0 if the iteration did not converge. */
+int dvi__symmetric_eigenvalues(int n, double *A, double *lambda, double *work);
+
 /* Count the negative eigenvalues of a full matrix H, column j at H + j*lead. H is the projection of
  * a larger matrix onto n orthonormal vectors. Only eigenvalues that are settled to a tenth of their
  * size count. `next` is the length of the part of H's last column beyond the n vectors (Saad 2011,

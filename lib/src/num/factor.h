@@ -34,6 +34,8 @@ typedef struct dvi__factor_kind {
   int (*is_definite)(const void *factor, const dvi__pattern *pattern, int sign);
   /* dvi__linear_condition, or NULL if not known */
   double (*condition)(const void *factor);
+  /* The logarithm of |det| of the matrix that was factored last, or NULL if not known. */
+  double (*log_determinant)(const void *factor, const dvi__pattern *pattern);
   /* NULL if not known. */
   dvi__linear_cost (*cost)(const void *factor, const dvi__pattern *pattern);
 } dvi__factor_kind;

@@ -18,6 +18,7 @@
  * is not. Where KLU takes long, large systems go without a factor
  * (method/element/element_newton.c). */
 #include <klu.h>
+#include <math.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -281,9 +282,20 @@ static dvi__linear_cost klu_complex_cost(const void *factor, const dvi__pattern 
   return (dvi__linear_cost){2 * one.entries, 4 * one.operations};
 }
 
+/* L has a unit diagonal. */
+static double klu_complex_log_determinant(const void *factor, const dvi__pattern *pattern)
+{
+  const double *pivot = ((const sparse *)factor)->current->Udiag;
+  double sum = 0;
+  for (ptrdiff_t i = 0; i < pattern->columns; i++)
+    sum += log(hypot(pivot[2 * i], pivot[2 * i + 1]));
+  return sum;
+}
+
 const dvi__factor_kind dvi__complex_factor = {.name = "sparse complex LU (KLU)",
                                               .create = klu_create_complex,
                                               .destroy = klu_destroy,
                                               .refactor = klu_factor_again,
                                               .solve = klu_solve_one,
+                                              .log_determinant = klu_complex_log_determinant,
                                               .cost = klu_complex_cost};

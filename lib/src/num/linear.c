@@ -273,6 +273,15 @@ int dvi__linear_sign(const dvi__linear *linear)
   return linear->kind->sign(linear->factor, linear->form.pattern);
 }
 
+/* The factor is that of the equilibrated matrix. */
+double dvi__linear_log_determinant(const dvi__linear *linear)
+{
+  double sum = linear->kind->log_determinant(linear->factor, linear->form.pattern);
+  for (int i = 0; i < linear->form.pattern->columns && has_scales(linear); i++)
+    sum -= log(linear->row_scale[i]) + log(linear->column_scale[i]);
+  return sum;
+}
+
 double dvi__linear_condition(const dvi__linear *linear)
 {
   return linear->kind->condition != NULL ? linear->kind->condition(linear->factor) : 1;

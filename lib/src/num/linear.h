@@ -102,6 +102,9 @@ dvi_status dvi__linear_factor(dvi__linear *linear, const double *values);
  * real. 0 if not known, as for a matrix with a border and for operators without a sign. */
 int dvi__linear_sign(const dvi__linear *linear);
 
+/* Give the logarithm of |det| of a COMPLEX matrix, which was factored last. */
+double dvi__linear_log_determinant(const dvi__linear *linear);
+
 /* Give an estimate of the reciprocal condition of the equilibrated matrix that was factored last, 1
  * if none is known. That of a sparse one is the ratio of its smallest and largest pivot, that of a
  * DEFINITE one the smallest ratio of a pivot and its entry of the diagonal. */

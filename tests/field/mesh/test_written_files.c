@@ -80,12 +80,13 @@ static void check_returns(const dvi_mesh *mesh, const char *name, int has_parts)
   dvi_mesh_destroy(&again);
 }
 
+/* But for polytopes, which have four coordinates or five. */
 START_TEST(every_generated_mesh_returns)
 {
   for (int i = 0; dvi_mesh_generator_name(i) != NULL; i++) {
     const char *name = dvi_mesh_generator_name(i);
     dvi_mesh *mesh = generated(name, (dvi_generator_options){.size = 0});
-    check_returns(mesh, "mesh.msh", 1);
+    if (dvi_mesh_space(mesh) <= 3) check_returns(mesh, "mesh.msh", 1);
     if (dvi_mesh_dimension(mesh) == 2 && strcmp(name, "kuhn-torus") != 0) {
       check_returns(mesh, "mesh.off", 0);
       check_returns(mesh, "mesh.ply", 0);

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/memory.h"
 #include "support/suite.h"
 
 static const double pi = 3.14159265358979323846;
@@ -262,8 +263,60 @@ START_TEST(lengths_that_violate_inequalities_are_refused_with_their_simplex)
   length[0] = NAN;
   ck_assert_int_eq(dvi_regge_action(regge, length, &action, NULL), DVI_BAD_ARGUMENT);
   check_words("edge 0 (vertices 0 1) has the length nan");
+  length[0] = 1e99;
+  ck_assert_int_eq(dvi_regge_action(regge, length, &action, NULL), DVI_BAD_ARGUMENT);
+  check_words("edge 0 (vertices 0 1) has the length 1e+99, and 1e-60 to 1e+60 are possible");
   free(length);
   dvi_regge_destroy(&regge);
+}
+END_TEST
+
+START_TEST(overflows_are_refused)
+{
+  dvi_regge *regge = complex_of("simplex-4", NULL, 1e300);
+  double *length = lengths_of(regge, 0), action;
+  for (int e = 0; e < 10; e++) length[e] *= 1e30;
+  ck_assert_int_eq(dvi_regge_action(regge, length, &action, NULL), DVI_NOT_FINITE);
+  check_words("not finite with Lambda = 1e+300");
+  free(length);
+  dvi_regge_destroy(&regge);
+}
+END_TEST
+
+/* The action of tetrahedra of the boundary of a 4-simplex. Tetrahedron c lacks point c, and one
+ * tetrahedron alone is number 0. */
+static double action_of_part(int first, int cells)
+{
+  static const double point[20] = {0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+  int vertex[20];
+  for (int c = 0; c < 5; c++)
+    for (int i = 0; i < 4; i++) vertex[4 * c + i] = i + (i >= c);
+  const dvi_mesh_terms terms = {.size = sizeof terms,
+                                .dimension = 3,
+                                .space = 4,
+                                .points = cells == 1 ? 4 : 5,
+                                .point = cells == 1 ? point + 4 : point,
+                                .cells = cells,
+                                .vertex = cells == 1 ? vertex + 16 : vertex + 4 * first};
+  dvi_mesh *mesh = NULL;
+  dvi_regge *regge = NULL;
+  double length[10], action;
+  ck_assert_int_eq(dvi_mesh_create(&terms, &mesh), DVI_OK);
+  ck_assert_int_eq(
+      dvi_regge_create(&(dvi_regge_terms){.size = sizeof(dvi_regge_terms), .mesh = mesh}, &regge),
+      DVI_OK);
+  ck_assert_int_eq(dvi_regge_lengths(regge, length), DVI_OK);
+  ck_assert_int_eq(dvi_regge_action(regge, length, &action, NULL), DVI_OK);
+  dvi_regge_destroy(&regge);
+  dvi_mesh_destroy(&mesh);
+  return action;
+}
+
+/* Deficits of the boundary add up to those inside (Hartle and Sorkin 1981). The tetrahedron that is
+ * left out has the points 1 to 4, and all its edges the length sqrt(2). */
+START_TEST(actions_of_complexes_that_are_glued_add_up)
+{
+  ck_assert_double_eq_tol(action_of_part(1, 4) + action_of_part(0, 1), action_of_part(0, 5), 1e-13);
 }
 END_TEST
 
@@ -287,6 +340,34 @@ START_TEST(meshes_of_other_cells_are_refused)
 }
 END_TEST
 
+/* Allocate one block less each time, until the call succeeds. */
+START_TEST(no_memory_is_reported)
+{
+  dvi_mesh *mesh = NULL;
+  dvi_matrix *hessian = NULL;
+  dvi_regge_measures m;
+  int failures = 0;
+  ck_assert_int_eq(dvi_mesh_generate("cell-16", NULL, &mesh), DVI_OK);
+  const dvi_regge_terms terms = {.size = sizeof terms, .mesh = mesh};
+  for (dvi_status status = DVI_NO_MEMORY; status != DVI_OK; failures++) {
+    dvi_regge *regge = NULL;
+    double length[24], action;
+    for (int e = 0; e < 24; e++) length[e] = 1;
+    dvi__fail_allocations_after(failures);
+    status = dvi_regge_create(&terms, &regge);
+    if (status == DVI_OK) status = dvi_regge_action(regge, length, &action, NULL);
+    if (status == DVI_OK) status = dvi_regge_measure(regge, length, &m);
+    if (status == DVI_OK) status = dvi_regge_hessian_create(regge, length, &hessian);
+    dvi__fail_allocations_after(-1);
+    if (status != DVI_OK) ck_assert_int_eq(status, DVI_NO_MEMORY);
+    dvi_matrix_destroy(&hessian);
+    dvi_regge_destroy(&regge);
+  }
+  ck_assert_int_gt(failures, 15);
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
+
 SUITE(action)
 {
   tcase_add_test(tests, regular_polytopes_have_their_deficits_and_actions);
@@ -297,5 +378,8 @@ SUITE(action)
   tcase_add_test(tests, the_action_is_homogeneous);
   tcase_add_test(tests, hinges_have_volumes_and_deficits);
   tcase_add_test(tests, lengths_that_violate_inequalities_are_refused_with_their_simplex);
+  tcase_add_test(tests, overflows_are_refused);
+  tcase_add_test(tests, actions_of_complexes_that_are_glued_add_up);
   tcase_add_test(tests, meshes_of_other_cells_are_refused);
+  tcase_add_test(tests, no_memory_is_reported);
 }

@@ -1,5 +1,5 @@
-/* Universes of equal sections: orders against the exact solution of short struts, ends, refusals. */
 /* labels: order */
+/* Universes of equal sections: orders against the exact limit of short struts, ends, refusals. */
 #include <dvi/regge.h>
 #include <math.h>
 #include <stdlib.h>
@@ -19,7 +19,7 @@ static dvi_regge *sections_of(const char *name, double lambda)
 
 /* Short struts have the constraint
  *
- *     l^2 = F(v) = N_1/(Lambda N_3 sqrt(2)/12) (2 pi - n theta) sqrt(1 - 3 s v^2/8)/sqrt(1 - s v^2/4)
+ *     l^2 = N_1 (2 pi - n theta) sqrt(1 - 3 s v^2/8) / (Lambda N_3 (sqrt(2)/12) sqrt(1 - s v^2/4))
  *
  * with the rate v = dl/dt, so that t = int dl/v is an integral over v. These lengths at T are
  * mpmath's, by quadrature. Lambda = 3 stands for a universe of radius 1 at rest. */

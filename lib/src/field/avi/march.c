@@ -3,11 +3,11 @@
 
 #include <math.h>
 #include <string.h>
-#include <dvi/number.h>
 
 #include "core/memory.h"
 #include "core/status.h"
 #include "field/avi/monodromy.h"
+#include "field/step/classes.h"
 #include "field/step/observables.h"
 #include "field/step/source.h"
 
@@ -33,46 +33,6 @@ typedef struct march {
   signal *signal;
   double *source;
 } march;
-
-/* ---- options ---- */
-
-static dvi_status bad_option(const char *text, int length)
-{
-  return dvi__fail(DVI_BAD_OPTION,
-                   "avi: \"%.*s\" is no option; classes=yes, classes=no and band=NUMBER, above 1, "
-                   "are possible",
-                   length, text);
-}
-
-static int is_text(const char *text, int length, const char *other)
-{
-  return (int)strlen(other) == length && strncmp(text, other, (size_t)length) == 0;
-}
-
-static dvi_status read_option(const char *text, int length, dvi__avi_terms *terms)
-{
-  double band = 0;
-  if (is_text(text, length, "classes=yes") || is_text(text, length, "classes=no")) {
-    terms->is_free = text[length - 1] == 'o';
-    return DVI_OK;
-  }
-  if (strncmp(text, "band=", 5) != 0 || dvi_number_read(text + 5, &band) != text + length ||
-      !(band > 1) || isinf(band))
-    return bad_option(text, length);
-  terms->band = band;
-  return DVI_OK;
-}
-
-static dvi_status read_options(const char *text, dvi__avi_terms *terms)
-{
-  while (*text != '\0') {
-    const int length = (int)strcspn(text, ",");
-    DVI_TRY(read_option(text, length, terms));
-    text += length;
-    if (*text == ',' && *++text == '\0') return bad_option("", 0);
-  }
-  return DVI_OK;
-}
 
 /* ---- the field's arrays ---- */
 
@@ -158,7 +118,7 @@ static dvi_status make_arrays(const dvi_field *field, const dvi__march_plan *pla
   a->terms.fraction = plan->fraction;
   a->terms.span = plan->step > 0 ? 0 : plan->span;
   a->terms.threads = plan->threads;
-  DVI_TRY(read_options(plan->options, &a->terms));
+  DVI_TRY(dvi__read_classes(plan->options, &a->terms.is_free, &a->terms.band));
   DVI_TRY(dvi__wave_source(field, &a->source));
   const int currents = field->currents + (a->source != NULL);
   a->M1 = DVI_NEW(double, field->cells);

@@ -5,51 +5,15 @@
 #include <math.h>
 
 #include "core/status.h"
-
-enum { DENOMINATOR_MOST = 64, PERIOD_MOST = 1000 };
+#include "field/step/classes.h"
 
 /* Events that a search may cost, unless the user asks for a span. */
 static const double events_wanted = 5e7;
 
-/* ---- the common period ---- */
-
-static int64_t greatest_divisor(int64_t a, int64_t b)
-{
-  while (b != 0) {
-    const int64_t rest = a % b;
-    a = b;
-    b = rest;
-  }
-  return a;
-}
-
-/* The common multiple of the steps in units of shortest/q, or 0 if one is no multiple of the unit,
- * or if it is too long. */
-static int64_t common_multiple(const dvi__avi *avi, int q)
-{
-  const double most = PERIOD_MOST * avi->longest / avi->shortest * q;
-  int64_t multiple = 1, last = 0;
-  for (int64_t f = 0; f < avi->active_faces; f++) {
-    const double units = avi->step[f] / avi->shortest * q;
-    if (fabs(units - rint(units)) > 1e-10 * units) return 0;
-    const int64_t p = (int64_t)rint(units);
-    if (p == last) continue;
-    last = p;
-    multiple = multiple / greatest_divisor(multiple, p) * p;
-    if ((double)multiple > most) return 0;
-  }
-  return multiple;
-}
-
 static double common_period(const dvi__avi *avi)
 {
   if (!avi->is_queued) return avi->longest;
-  if (avi->longest > 1e6 * avi->shortest) return 0;
-  for (int q = 1; q <= DENOMINATOR_MOST; q++) {
-    const int64_t multiple = common_multiple(avi, q);
-    if (multiple > 0) return (double)multiple * avi->shortest / q;
-  }
-  return 0;
+  return dvi__common_period(avi->active_faces, avi->step, avi->shortest, avi->longest);
 }
 
 /* ---- passages ---- */

@@ -9,36 +9,16 @@
  * and A loses D_mean h/M1, and D the charge int J + z D_mean. The halves b and a of int J may
  * differ. Then D_mean is less by exp(-s) (b - a)/2, too. This keeps the passage its own inverse in
  * time, C A - D changes by int J alone, and without a damping b is a push at the begin and a one at
- * the end.
- *
- * A face's kicks K = h_f H_f, once in h_f, stand for the force H_f all the time. A regular train of
- * them with a damping leaves in D, at the time x after a kick, more than that force does, by
- *
- *     K exp(-c x)/(1 - exp(-c h_f)) - H_f/c = H_f (h_f phi2(c h_f) - x phi1(c x))/phi1(c h_f),
- *
- * which is h_f/2 - x without a damping. At the start there was no kick before. */
+ * the end. */
 #include <math.h>
 
 #include "field/avi/engine.h"
+#include "field/step/decay.h"
 
 /* phi1 of z with change = exp(-z) - 1. */
 static double phi1_from(double change, double z)
 {
   return z != 0 ? -change / z : 1;
-}
-
-static double phi1(double z)
-{
-  return phi1_from(expm1(-z), z);
-}
-
-/* 1/2 - z/6 + z^2/24 and so on for small z, where the difference cancels. */
-static double phi2(double z)
-{
-  if (z > 1) return (1 - phi1(z)) / z;
-  double term = 0.5, sum = term;
-  for (int n = 3; fabs(term) > 1e-17; n++) sum += term *= -z / n;
-  return sum;
 }
 
 static double rate(const dvi__avi *avi, int64_t e)
@@ -52,7 +32,7 @@ dvi__avi_passage dvi__avi_passage_of(const dvi__avi *avi, int64_t e, double span
 {
   const dvi__avi_extra *extra = avi->extras + avi->extra[e];
   const double z = rate(avi, e) * span, change = expm1(-z), first = phi1_from(change, z);
-  const double second = extra->pushes > 0 ? phi2(z) : 0,
+  const double second = extra->pushes > 0 ? dvi__decay_second(z) : 0,
                uneven = extra->pushes > 0 ? 0.5 * exp(-0.5 * z) : 0;
   double before = 0, after = 0;
   for (int i = extra->push; i < extra->push + extra->pushes; i++) {
@@ -71,7 +51,5 @@ dvi__avi_passage dvi__avi_passage_of(const dvi__avi *avi, int64_t e, double span
 
 double dvi__avi_owed_time(const dvi__avi *avi, int64_t e, int64_t f, double since)
 {
-  const double c = rate(avi, e), h = avi->step[f];
-  if (!(c > 0)) return since - 0.5 * h;
-  return (since * phi1(c * since) - h * phi2(c * h)) / phi1(c * h);
+  return dvi__decay_owed(rate(avi, e), avi->step[f], since);
 }

@@ -6,7 +6,7 @@
  *     A_e(t) = A_e - E_e (t - t_e),    D_e(t) = D_e + sum over f of sign H_f(t) (t - t_f - h_f/2),
  *
  * which is of order 2 at any t, and with equal steps E halfway between two of its values. With a
- * damping both are those of passage.c. */
+ * damping both are those of passage.c and decay.h. */
 #include <math.h>
 #include <string.h>
 

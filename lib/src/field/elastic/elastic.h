@@ -18,6 +18,7 @@ typedef struct dvi__solid_material {
   double lambda, mu, mooney, rho, alpha, beta;
   int (*energy)(int64_t count, const double *F, double *W, double *P, double *Hessian, void *user);
   void *user;
+  double rest[DVI__SOLID_ENTRIES * DVI__SOLID_ENTRIES]; /* Hessian of W at rest, symmetric */
 } dvi__solid_material;
 
 struct dvi_elastic {
@@ -36,7 +37,8 @@ struct dvi_elastic {
   int *condition; /* [vertices*n] the condition of a component, or -1 */
   dvi_elastic_condition *conditions;
   int condition_count;
-  int is_driven; /* a condition depends on time */
+  double *steady; /* [vertices*n] displacements that do not depend on time, 0 for the others */
+  int is_driven;  /* a condition depends on time */
   /* Loads: those of a cell are load_of[load_start[c]] .. with the weight, its volume or the area of
    * its facet, over the nodes on which it acts in equal parts. */
   int64_t *load_start; /* [cells+1], NULL without loads */
@@ -48,6 +50,7 @@ struct dvi_elastic {
   int obstacles;
   int8_t *is_outer; /* [vertices] not 0 at the boundary */
   int is_split;
+  _Atomic double fastest;           /* bound of the frequencies at rest, 0 until it is asked for */
   struct dvi__solid_system *system; /* what its mechanical system needs, made when asked for */
 };
 
@@ -56,6 +59,7 @@ typedef struct dvi__solid_load {
   int load;
   unsigned nodes; /* bit a is set if the node a of the cell takes a part */
   double weight;  /* the part of a node: volume or area over the number of nodes */
+  int is_facet;
   double at[DVI_ELASTIC_DIMENSION_MAX], normal[DVI_ELASTIC_DIMENSION_MAX];
 } dvi__solid_load;
 
@@ -73,15 +77,17 @@ static inline void dvi__solid_gather(const dvi_elastic *e, int64_t cell, const d
  * negative one if the callback failed. Messages are left to the caller. */
 int dvi__solid_force(const dvi_elastic *e, int64_t cell, const double *u, double *f);
 
-/* Give the energy V W, and the stiffness V d2W/du2 [((n+1)*n)^2]. Returns as dvi__solid_force. */
+/* Give the energy V W, and the stiffness V d2W/du2 [((n+1)*n)^2]. Returns as dvi__solid_force.
+ * The stiffness at rest has u = NULL, and is always there. */
 int dvi__solid_stored(const dvi_elastic *e, int64_t cell, const double *u, double *energy);
 int dvi__solid_stiffness(const dvi_elastic *e, int64_t cell, const double *u, double *K);
 
 /* Add the loads of a cell at time t to f [(n+1)*n]. Returns 0, or as the callbacks do. */
 int dvi__solid_add_load(const dvi_elastic *e, int64_t cell, double t, double *f);
 
-/* Give the displacement that a condition says for a vertex at a time, and its rate. Returns as
- * callbacks do, or -1 for numbers that are not finite. */
+/* Set the components of u and rate [n] of a vertex that are given to what the conditions say at a
+ * time. Others stay. rate may be NULL. Returns as callbacks do, or -1 for numbers that are not
+ * finite. */
 int dvi__solid_given(const dvi_elastic *e, int64_t vertex, double t, double *u, double *rate);
 
 /* Give the largest eigenvalue of a cell's stiffness at rest against its own lumped mass

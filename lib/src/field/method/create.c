@@ -35,24 +35,8 @@ const char *dvi_march_method_name(int i)
 
 /* ---- checks ---- */
 
-static dvi_status check_options(const dvi_field *field, const dvi_march_options *options)
+static dvi_status check_field(const dvi_field *field)
 {
-  if (options->size != sizeof *options)
-    return dvi__fail(DVI_BAD_ARGUMENT, "march: set options.size to sizeof(dvi_march_options)");
-  if (!isfinite(options->step) || options->step < 0)
-    return dvi__fail(DVI_BAD_ARGUMENT, "march: the step is %g; a finite one above 0 is needed",
-                     options->step);
-  if (!(options->fraction >= 0 && options->fraction < 1))
-    return dvi__fail(DVI_BAD_ARGUMENT,
-                     "march: the fraction of the largest stable step is %g; above 0 and below 1 "
-                     "are possible",
-                     options->fraction);
-  if (!isfinite(options->span) || options->span < 0)
-    return dvi__fail(DVI_BAD_ARGUMENT, "march: the span is %g; 0 or more are possible",
-                     options->span);
-  if (options->threads < 0 || options->threads > DVI__MARCH_THREADS)
-    return dvi__fail(DVI_BAD_ARGUMENT, "march: %d threads; 1 to %d are possible", options->threads,
-                     DVI__MARCH_THREADS);
   if (field->potential.density != NULL)
     return dvi__fail(DVI_UNSUPPORTED,
                      "march: the field has a potential, which marches do not take; verlet and the "
@@ -82,12 +66,8 @@ static dvi_status find(const char *text, const method **found, const char **rest
 static dvi_status prepare(const dvi_field *field, const dvi_march_options *options,
                           const char *usual, const method **found, dvi__march_plan *plan)
 {
-  DVI_TRY(check_options(field, options));
-  *plan = (dvi__march_plan){.step = options->step,
-                            .fraction = options->fraction > 0 ? options->fraction : 0.5,
-                            .span = options->span,
-                            .threads = options->threads > 0 ? options->threads : 1,
-                            .potential = options->potential};
+  DVI_TRY(dvi__plan_march(options, plan));
+  DVI_TRY(check_field(field));
   DVI_TRY(find(options->method != NULL ? options->method : usual, found, &plan->options));
   if ((*found)->needs_boxes && dvi_mesh_kind(field->mesh) != DVI_BOXES)
     return dvi__fail(DVI_UNSUPPORTED,

@@ -11,6 +11,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "field/regge/regge.h"
+#include "num/finite.h"
 
 static const double pi = 3.14159265358979323846;
 
@@ -88,6 +89,20 @@ static void add_hessian(const dvi_regge *r, int64_t cell, const dvi__measured_si
                                                                             all[f * pairs + e]);
 }
 
+/* Lambda may be so large that products overflow. */
+static dvi_status check_finite(const dvi_regge *r, const dvi__regge_sums *sums)
+{
+  const size_t edges = (size_t)r->edges, entries = (size_t)r->pattern.start[r->edges];
+  if (isfinite(sums->action) &&
+      (sums->gradient == NULL || dvi__first_not_finite(edges, sums->gradient) < 0) &&
+      (sums->hessian == NULL || dvi__first_not_finite(entries, sums->hessian) < 0))
+    return DVI_OK;
+  return dvi__fail(DVI_NOT_FINITE,
+                   "regge: the action or a derivative is not finite with Lambda = %g: take lengths "
+                   "near 1",
+                   r->lambda);
+}
+
 dvi_status dvi__regge_evaluate(const dvi_regge *r, const double *length, dvi__regge_sums *sums)
 {
   dvi__measured_simplex m;
@@ -104,7 +119,7 @@ dvi_status dvi__regge_evaluate(const dvi_regge *r, const double *length, dvi__re
     if (sums->gradient != NULL) add_gradient(r, c, &m, sums);
     if (sums->hessian != NULL) add_hessian(r, c, &m, sums);
   }
-  return DVI_OK;
+  return check_finite(r, sums);
 }
 
 /* ---- public functions ---- */

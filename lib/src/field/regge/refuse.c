@@ -1,5 +1,4 @@
 /* Simplices that do not exist, in words. */
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -8,6 +7,9 @@
 #include "field/regge/regge.h"
 
 enum { LIST_SIZE = 320 };
+
+/* Volumes and derivatives of other lengths might overflow. */
+static const double shortest = 1e-60, longest = 1e60;
 
 /* List the lengths of a face's edges. */
 static void list_lengths(int n, const double *length, int k, const int *corner, const int *vertex,
@@ -62,6 +64,10 @@ static dvi_status refuse_cell(const dvi_regge *r, int64_t cell, const double *le
 static dvi_status refuse_length(const dvi_regge *r, int64_t edge, double length)
 {
   const dvi__cell_name name = dvi__name_cell(r->mesh, 1, edge);
+  if (length > 0)
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "regge: %s has the length %g, and %g to %g are possible: choose another unit",
+                     name.text, length, shortest, longest);
   return dvi__fail(DVI_BAD_ARGUMENT,
                    "regge: %s has the length %g, and lengths are positive numbers: squares of "
                    "lengths below 0, as of Lorentzian signature, are not possible",
@@ -75,7 +81,7 @@ dvi_status dvi__regge_measure_cell(const dvi_regge *r, const double *length, int
   double own[DVI__PAIRS];
   for (int e = 0; e < r->pairs; e++) {
     own[e] = length[edge[e]];
-    if (!(own[e] > 0) || !isfinite(own[e])) return refuse_length(r, edge[e], own[e]);
+    if (!(own[e] >= shortest && own[e] <= longest)) return refuse_length(r, edge[e], own[e]);
   }
   return dvi__simplex_measure(r->n, own, simplex) ? DVI_OK : refuse_cell(r, cell, own);
 }

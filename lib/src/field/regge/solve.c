@@ -10,7 +10,10 @@
  * those whose eigenvalues are large beside delta. |g|^2 falls along it, so that it is halved until
  * |g| falls and all simplices exist. The null directions are counted by
  *
- *     sum delta^2/(lambda^2 + delta^2) = -delta Im tr (H + i delta)^{-1}. */
+ *     log2 |det(H + 2 i delta)/det(H + i delta)| = sum log2((lambda^2 + 4 delta^2)
+ *                                                           /(lambda^2 + delta^2))/2,
+ *
+ * to which those with lambda = 0 add 1, and those with large lambda 0. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -56,6 +59,12 @@ typedef struct search {
   double size, terms; /* |g|, and that of the sizes of its terms */
 } search;
 
+static dvi_status no_memory(void)
+{
+  (void)dvi__fail(DVI_NO_MEMORY, "regge: no memory for Newton's method");
+  return DVI_NO_MEMORY;
+}
+
 /* ---- the system ---- */
 
 static dvi_status choose_unknowns(search *s, const int8_t *held)
@@ -82,8 +91,7 @@ static dvi_status choose_entries(search *s)
   p->start = DVI_NEW(int, s->unknowns + 1);
   p->row = DVI_NEW(int, all->start[all->rows]);
   s->place = DVI_NEW(int64_t, all->start[all->rows]);
-  if (p->start == NULL || p->row == NULL || s->place == NULL)
-    return dvi__fail(DVI_NO_MEMORY, "regge: no memory for Newton's method");
+  if (p->start == NULL || p->row == NULL || s->place == NULL) return no_memory();
   int count = 0;
   for (int64_t u = 0; u < s->unknowns; u++) {
     for (int64_t i = all->start[s->edge[u]]; i < all->start[s->edge[u] + 1]; i++) {
@@ -113,7 +121,7 @@ static dvi_status allocate(search *s)
   if (s->value == NULL || s->rhs == NULL || s->length == NULL || s->trial == NULL ||
       s->sums.deficit == NULL || s->sums.size == NULL || s->sums.gradient == NULL ||
       s->sums.terms == NULL || s->sums.hessian == NULL)
-    return dvi__fail(DVI_NO_MEMORY, "regge: no memory for Newton's method");
+    return no_memory();
   return dvi__linear_create(&s->pattern, DVI__LINEAR_COMPLEX, NULL, &s->linear);
 }
 
@@ -121,8 +129,7 @@ static dvi_status prepare(search *s, const int8_t *held)
 {
   s->unknown = DVI_NEW(int, s->regge->edges);
   s->edge = DVI_NEW(int, s->regge->edges);
-  if (s->unknown == NULL || s->edge == NULL)
-    return dvi__fail(DVI_NO_MEMORY, "regge: no memory for Newton's method");
+  if (s->unknown == NULL || s->edge == NULL) return no_memory();
   DVI_TRY(choose_unknowns(s, held));
   DVI_TRY(choose_entries(s));
   return allocate(s);
@@ -173,15 +180,16 @@ static double typical_length(const search *s)
   return norm(s, s->length) / sqrt((double)s->unknowns);
 }
 
-/* Factor H + i delta, with delta^2 = damping |H| |g|/l, where l is a typical length, or the least
- * delta. */
-static dvi_status factor(search *s, double gradient)
+/* Factor H + i delta, with delta^2 = damping |H| |g|/l, where l is a typical length, or a multiple
+ * of the least delta. */
+static dvi_status factor(search *s, double gradient, double multiple)
 {
   const int entries = s->pattern.start[s->unknowns];
   double most = 0;
   for (int i = 0; i < entries; i++) most = fmax(most, fabs(s->sums.hessian[s->place[i]]));
   if (most == 0) return dvi__fail(DVI_SINGULAR, "regge: the Hessian of the action vanishes");
-  s->delta = fmax(shift_part * most, sqrt(s->damping * most * gradient / typical_length(s)));
+  s->delta = fmax(multiple * shift_part * most,
+                  sqrt(s->damping * most * gradient / typical_length(s)));
   for (int64_t u = 0; u < s->unknowns; u++)
     for (int i = s->pattern.start[u]; i < s->pattern.start[u + 1]; i++) {
       s->value[2 * i] = s->sums.hessian[s->place[i]];
@@ -240,14 +248,31 @@ static dvi_status refuse(const search *s, int iterations, dvi_status refused)
       s->size, iterations);
 }
 
+/* Without held lengths, make the action (c^(n-2) S_0 - c^n Lambda V) stationary in their scale c
+ * first, because the gradient also vanishes as all lengths shrink to 0. */
+static dvi_status choose_scale(search *s)
+{
+  const dvi_regge *r = s->regge;
+  dvi__regge_sums sums = s->sums;
+  sums.gradient = sums.terms = sums.hessian = NULL;
+  if (s->unknowns < r->edges) return DVI_OK;
+  DVI_TRY(dvi__regge_evaluate(r, s->length, &sums));
+  const double volume = r->lambda * sums.volume,
+               square = (r->n - 2) * (sums.action + volume) / (r->n * volume);
+  if (!(square > 0) || !isfinite(square)) return DVI_OK;
+  for (int64_t e = 0; e < r->edges; e++) s->length[e] *= sqrt(square);
+  return DVI_OK;
+}
+
 static dvi_status iterate(search *s, int most, int *iterations)
 {
   dvi_status refused = DVI_OK;
   int falls = 1;
+  DVI_TRY(choose_scale(s));
   DVI_TRY(evaluate(s, s->length, 1));
   for (*iterations = 0; s->size > roundoff * s->terms && falls && *iterations < most;
        ++*iterations) {
-    DVI_TRY(factor(s, s->size));
+    DVI_TRY(factor(s, s->size, 1));
     DVI_TRY(find_step(s));
     DVI_TRY(search_line(s, &falls, &refused));
     DVI_TRY(evaluate(s, s->length, 1));
@@ -258,17 +283,13 @@ static dvi_status iterate(search *s, int most, int *iterations)
 
 /* ---- the report ---- */
 
-/* Add up -delta Im of the diagonal of (H + i delta)^{-1}, a column at a time. */
+/* Compare the determinants at delta and at 2 delta. */
 static dvi_status count_null(search *s, double *sum)
 {
-  DVI_TRY(factor(s, 0));
-  *sum = 0;
-  for (int64_t u = 0; u < s->unknowns; u++) {
-    memset(s->rhs, 0, (size_t)(2 * s->unknowns) * sizeof *s->rhs);
-    s->rhs[2 * u] = 1;
-    DVI_TRY(dvi__linear_solve(s->linear, s->rhs));
-    *sum -= s->delta * s->rhs[2 * u + 1];
-  }
+  DVI_TRY(factor(s, 0, 1));
+  const double before = dvi__linear_log_determinant(s->linear);
+  DVI_TRY(factor(s, 0, 2));
+  *sum = (dvi__linear_log_determinant(s->linear) - before) / log(2);
   return DVI_OK;
 }
 

@@ -9,8 +9,8 @@
  *     cos theta = (1/3 - s k^2)/(1 + s k^2)          between two walls,
  *     V = h (l_0^3 + l_0^2 l_1 + l_0 l_1^2 + l_1^3) sqrt(2)/48.
  *
- * n frusta are at a trapezoid, and the N_2 triangles of a section have 2 phi of the layer before less
- * 2 phi of the one behind. The layer's action, a discrete Lagrangian, is
+ * n frusta are at a trapezoid, and the N_2 triangles of a section have 2 phi of the layer before
+ * less 2 phi of the one behind. The layer's action, a discrete Lagrangian, is
  *
  *     S = N_1 A (2 pi - n theta) + s N_2 (sqrt(3)/2) phi (l_1^2 - l_0^2) - Lambda N_3 V.
  *
@@ -19,8 +19,8 @@
  *     dS/dm   = N_1 (2 pi - n theta) dA/dm - Lambda N_3 dV/dm
  *     dS/dl_0 = N_1 (2 pi - n theta) dA/dl_0 - s N_2 sqrt(3) phi l_0 - Lambda N_3 dV/dl_0.
  *
- * S(l_0, l_1) = S(l_1, l_0): order 2 in m. Stationary l_i: D_2 S(l_{i-1}, l_i) + D_1 S(l_i, l_{i+1})
- * = 0. */
+ * The l_i are stationary, D_2 S(l_{i-1}, l_i) + D_1 S(l_i, l_{i+1}) = 0. The order in m is 2,
+ * because S(l_0, l_1) = S(l_1, l_0). */
 #include <float.h>
 #include <math.h>
 
@@ -31,6 +31,9 @@
 static const double pi = 3.14159265358979323846;
 
 enum { ITERATIONS = 60 };
+
+/* The length at rest is about 1/sqrt(Lambda), and its cube may not underflow. */
+static const double least_lambda = 1e-100, most_lambda = 1e100;
 
 /* The sections, and the struts. */
 typedef struct sections {
@@ -122,11 +125,11 @@ static dvi_status check(const dvi_regge *r, const dvi_regge_universe_options *op
   if (options->steps < 1)
     return dvi__fail(DVI_BAD_ARGUMENT, "regge: %d steps are asked, 1 or more are possible",
                      options->steps);
-  if (!(r->lambda > 0))
+  if (!(r->lambda >= least_lambda && r->lambda <= most_lambda))
     return dvi__fail(DVI_BAD_ARGUMENT,
                      "regge: Lambda is %g, and an empty universe with a moment of rest needs one "
-                     "above 0",
-                     r->lambda);
+                     "above 0, of %g to %g",
+                     r->lambda, least_lambda, most_lambda);
   if (r->n != 3 || r->boundary_hinges > 0)
     return dvi__fail(
         DVI_UNSUPPORTED,
@@ -188,10 +191,9 @@ static dvi_status march(const sections *u, int steps, double *length, double *co
     double next = i > 0 ? 2 * length[i] - length[i - 1] : length[0];
     if (!advance(u, length[i], p, &next)) return refuse_layer(u, i, length[i]);
     length[i + 1] = next;
-    (void)measure(u, length[i], next, &y);
+    if (!measure(u, next, length[i], &y)) return refuse_layer(u, i, length[i]);
     if (constraint != NULL)
       constraint[i] = u->edges * y.deficit * y.A_m / (u->lambda * u->tetrahedra * y.V_m) - 1;
-    (void)measure(u, next, length[i], &y);
     p = first_slope(u, next, &y);
   }
   return DVI_OK;

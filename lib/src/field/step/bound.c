@@ -86,3 +86,29 @@ dvi_status dvi__refuse_options(const char *name, const dvi__march_plan *plan)
   return dvi__fail(DVI_BAD_OPTION, "march: %s has no options, and \"%s\" is one", name,
                    plan->options);
 }
+
+dvi_status dvi__plan_march(const dvi_march_options *options, dvi__march_plan *plan)
+{
+  if (options->size != sizeof *options)
+    return dvi__fail(DVI_BAD_ARGUMENT, "march: set options.size to sizeof(dvi_march_options)");
+  if (!isfinite(options->step) || options->step < 0)
+    return dvi__fail(DVI_BAD_ARGUMENT, "march: the step is %g; a finite one above 0 is needed",
+                     options->step);
+  if (!(options->fraction >= 0 && options->fraction < 1))
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "march: the fraction of the largest stable step is %g; above 0 and below 1 "
+                     "are possible",
+                     options->fraction);
+  if (!isfinite(options->span) || options->span < 0)
+    return dvi__fail(DVI_BAD_ARGUMENT, "march: the span is %g; 0 or more are possible",
+                     options->span);
+  if (options->threads < 0 || options->threads > DVI__MARCH_THREADS)
+    return dvi__fail(DVI_BAD_ARGUMENT, "march: %d threads; 1 to %d are possible", options->threads,
+                     DVI__MARCH_THREADS);
+  *plan = (dvi__march_plan){.step = options->step,
+                            .fraction = options->fraction > 0 ? options->fraction : 0.5,
+                            .span = options->span,
+                            .threads = options->threads > 0 ? options->threads : 1,
+                            .potential = options->potential};
+  return DVI_OK;
+}

@@ -16,6 +16,9 @@ typedef struct dvi__march_plan {
   const char *options; /* of the method, "key=value,...", or "" */
 } dvi__march_plan;
 
+/* Check the numbers of options, and set the plan to them. Its options of the method are left out. */
+dvi_status dvi__plan_march(const dvi_march_options *options, dvi__march_plan *plan);
+
 /* Choose the step of all cells, and give the bound below which steps are stable. A step beyond it
  * is refused with the bound and the place of the stiffest (k+1)-cell. */
 dvi_status dvi__choose_step(const dvi_field *field, const dvi__march_plan *plan, double *step,

@@ -1,7 +1,7 @@
 #!/bin/sh
 # dvi regge: digits, stationary lengths, files of lengths, universes, refusals.
 # Usage: test_regge.sh DVI
-. "$(dirname "$0")/check.sh"
+. "$(dirname "$0")/../check.sh"
 
 # quantity FILE NAME VALUE TOLERANCE: require a quantity.
 quantity() {

@@ -1,0 +1,49 @@
+/* Matrices of the unknowns, assembled from those of cells. */
+#ifndef DVI_FIELD_ELASTIC_ASSEMBLE_H
+#define DVI_FIELD_ELASTIC_ASSEMBLE_H
+#include "field/elastic/cell.h"
+
+/* Where the numbers of cells stand in a matrix. Rows of one node have the same columns, and the
+ * columns of a node stand in a row. */
+typedef struct dvi__solid_pattern {
+  dvi__csr matrix; /* with zeros, symmetric */
+  int *place;      /* [cells*(n+1)^2] of node a and b: where the columns of b begin in a row of a */
+} dvi__solid_pattern;
+
+/* Find the pattern. On failure nothing is owned. */
+dvi_status dvi__solid_pattern_create(const dvi_elastic *e, dvi__solid_pattern *pattern);
+void dvi__solid_pattern_clear(dvi__solid_pattern *pattern);
+
+/* Add a matrix of a cell [((n+1)*n)^2] to values in the order of the pattern. */
+void dvi__solid_add_matrix(const dvi_elastic *e, const dvi__solid_pattern *pattern, int64_t cell,
+                           const double *K, double *value);
+
+/* Give displacements [(n+1)*n] of a cell's nodes at coordinates q and time t. Returns 0, or a
+ * negative number of a condition. */
+int dvi__solid_gather_unknowns(const dvi_elastic *e, int64_t cell, double t, const double *q,
+                               double *u);
+
+/* Give the rates [(n+1)*n] of the nodes of a cell that conditions move, and 0 for the others.
+ * Returns whether there are any, or a negative number of a callback. */
+int dvi__solid_driven_rates(const dvi_elastic *e, int64_t cell, double t, double *rate);
+
+/* Add numbers of a cell's nodes [(n+1)*n] to those of the unknowns. */
+static inline void dvi__solid_scatter(const dvi_elastic *e, int64_t cell, const double *own,
+                                      double *all)
+{
+  const int n = e->n, *vertex = e->vertex + cell * (n + 1);
+  for (int a = 0; a <= n; a++)
+    for (int i = 0; i < n; i++) {
+      const int k = e->unknown[(int64_t)vertex[a] * n + i];
+      if (k >= 0) all[k] += own[a * n + i];
+    }
+}
+
+/* Tell if a component of a vertex moves as a condition says. */
+static inline int dvi__solid_is_driven(const dvi_elastic *e, int64_t component)
+{
+  const int c = e->condition[component];
+  return c >= 0 && e->conditions[c].displacement != NULL && !e->conditions[c].is_steady;
+}
+
+#endif

@@ -1,0 +1,36 @@
+/* What a cell stores and pulls, beside what elastic.h tells. */
+#ifndef DVI_FIELD_ELASTIC_CELL_H
+#define DVI_FIELD_ELASTIC_CELL_H
+#include "field/elastic/laws.h"
+#include "field/mesh/mesh.h"
+
+/* Give H = grad u of displacements u [(n+1)*n], with the gradients g [(n+1)*n]. n is a constant
+ * where this is called. */
+static inline void dvi__displacement_gradient(int n, const double *g, const double *u, double *H)
+{
+  for (int i = 0; i < n; i++) {
+    double difference[DVI_ELASTIC_DIMENSION_MAX];
+    for (int a = 0; a < n; a++) difference[a] = u[(a + 1) * n + i] - u[i];
+    for (int j = 0; j < n; j++) {
+      double sum = 0;
+      for (int a = 0; a < n; a++) sum += difference[a] * g[(a + 1) * n + j];
+      H[i * n + j] = sum;
+    }
+  }
+}
+
+enum { DVI__SOLID_BATCH = 32 };
+
+/* Give the forces [count][(n+1)*n] of `count` cells from `first` on, at most DVI__SOLID_BATCH, at
+ * displacements u [count][(n+1)*n] of their nodes. Energies that are given are called once for
+ * cells in a row. Returns as dvi__solid_force, and in *failed the place of the cell of which. */
+int dvi__solid_forces(const dvi_elastic *e, int64_t first, int count, const double *u, double *f,
+                      int *failed);
+
+/* Give H of a cell. */
+void dvi__solid_strain(const dvi_elastic *e, int64_t cell, const double *u, double *H);
+
+/* Write the sentence about a condition for which dvi__solid_given returned not 0. */
+dvi_status dvi__solid_refuse_given(const dvi_elastic *e, int64_t vertex, int returned);
+
+#endif

@@ -1,0 +1,157 @@
+/* Small vibrations about rest, K x = omega^2 M x, without the rigid motions that conditions
+ * allow. */
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "field/algebra/largest.h"
+#include "field/elastic/rigid.h"
+
+enum { DEFAULT_COUNT = 6 };
+
+/* ---- matrices ---- */
+
+static dvi_status make_mass(const dvi_elastic *e, double **mass)
+{
+  *mass = DVI_NEW(double, e->unknowns);
+  if (*mass == NULL) return dvi__fail(DVI_NO_MEMORY, "elastic: no memory for a mass");
+  for (int64_t k = 0; k < e->vertices * e->n; k++)
+    if (e->unknown[k] >= 0) (*mass)[e->unknown[k]] = e->mass[k / e->n];
+  return DVI_OK;
+}
+
+static dvi_matrix view_diagonal(int64_t rows, const double *value)
+{
+  return (dvi_matrix){.rows = rows, .columns = rows, .width = 1, .symmetric = 1, .value = value};
+}
+
+/* ---- the fastest one ---- */
+
+static dvi_status find_fastest(const dvi_elastic *e, const dvi__csr *K, const double *mass,
+                               double *omega)
+{
+  double bound = 0;
+  const dvi_matrix stiffness = dvi__csr_view(K, 1), diagonal = view_diagonal(e->unknowns, mass);
+  const dvi__pencil pencil = {.K = &stiffness, .M = &diagonal, .dimension = e->n};
+  const dvi_status status = dvi__largest_eigenvalue(&pencil, &bound);
+  *omega = sqrt(fmax(bound, 0));
+  return status;
+}
+
+dvi_status dvi_elastic_fastest(const dvi_elastic *elastic, double *omega)
+{
+  if (elastic == NULL || omega == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "elastic: a solid and a place for a frequency are needed");
+  dvi__csr K = {0};
+  double *mass = NULL;
+  *omega = elastic->fastest;
+  if (*omega > 0) return DVI_OK;
+  DVI_TRY(dvi__solid_rest_stiffness(elastic, &K));
+  dvi_status status = make_mass(elastic, &mass);
+  if (status == DVI_OK) status = find_fastest(elastic, &K, mass, omega);
+  dvi__csr_clear(&K);
+  dvi__release(mass);
+  if (status == DVI_OK) ((dvi_elastic *)elastic)->fastest = *omega; /* the same in every thread */
+  return status;
+}
+
+/* ---- modes ---- */
+
+typedef struct modes {
+  const dvi_elastic *elastic;
+  dvi__csr K;
+  double *mass, *value, *vector; /* [unknowns], [asked], [asked][unknowns] */
+  dvi__rigid rigid;
+  int count, asked;
+} modes;
+
+static void clear(modes *m)
+{
+  dvi__csr_clear(&m->K);
+  dvi__rigid_clear(&m->rigid);
+  dvi__release(m->mass);
+  dvi__release(m->value);
+  dvi__release(m->vector);
+}
+
+/* With rigid motions K is semidefinite. A shift below 0, of the size of the lowest eigenvalues,
+ * makes it definite: entries of K over those of M are about c^2/h^2, and a length of the mesh about
+ * h N^(1/n) with N nodes. */
+static double shift_below_zero(const modes *m)
+{
+  const dvi_elastic *e = m->elastic;
+  double k = 0, mass = 0;
+  for (int64_t i = 0; i < e->unknowns; i++) {
+    k += m->K.value[dvi__csr_find(&m->K, i, (int)i)];
+    mass += m->mass[i];
+  }
+  return -0.1 * k / mass * pow((double)e->vertices, -2.0 / e->n);
+}
+
+/* Move the modes that are not rigid motions to the front. Returns their number. */
+static int drop_rigid(modes *m)
+{
+  const size_t n = (size_t)m->elastic->unknowns;
+  int kept = 0;
+  for (int i = 0; i < m->asked; i++) {
+    const double *x = m->vector + (size_t)i * n;
+    if (dvi__rigid_share(&m->rigid, x) > 0.5) continue;
+    m->value[kept] = m->value[i];
+    if (kept != i) memcpy(m->vector + (size_t)kept * n, x, n * sizeof *x);
+    kept++;
+  }
+  return kept;
+}
+
+static void spread(const modes *m, const double *vector, double *mode)
+{
+  const dvi_elastic *e = m->elastic;
+  const int64_t numbers = e->vertices * e->n;
+  for (int i = 0; i < m->count && mode != NULL; i++)
+    for (int64_t k = 0; k < numbers; k++)
+      mode[i * numbers + k] = e->unknown[k] >= 0 ? vector[i * e->unknowns + e->unknown[k]] : 0;
+}
+
+static dvi_status find(modes *m, double shift, double *eigenvalue, double *mode)
+{
+  const dvi_elastic *e = m->elastic;
+  const int64_t most = e->unknowns - m->rigid.count;
+  if (m->count < 1 || m->count > most)
+    return dvi__fail(DVI_BAD_SIZE,
+                     "elastic: %d modes of %lld displacements, of which %lld are rigid motions: "
+                     "take 1 to %lld",
+                     m->count, (long long)e->unknowns, (long long)m->rigid.count, (long long)most);
+  m->asked = m->count + (int)m->rigid.count;
+  m->value = DVI_NEW(double, m->asked);
+  m->vector = DVI_NEW(double, m->asked * e->unknowns);
+  if (m->value == NULL || m->vector == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "elastic: no memory for %d modes", m->asked);
+  const dvi_matrix stiffness = dvi__csr_view(&m->K, 1), mass = view_diagonal(e->unknowns, m->mass);
+  const dvi__pencil pencil = {.K = &stiffness, .M = &mass, .dimension = e->n};
+  if (shift == 0 && m->rigid.count > 0) shift = shift_below_zero(m);
+  DVI_TRY(dvi__modes_near(&pencil, shift, m->asked, m->value, m->vector));
+  const int kept = drop_rigid(m), first = dvi__first_of_nearest(kept, m->value, m->count, shift);
+  memcpy(eigenvalue, m->value + first, (size_t)m->count * sizeof *eigenvalue);
+  spread(m, m->vector + (int64_t)first * e->unknowns, mode);
+  return DVI_OK;
+}
+
+dvi_status dvi_elastic_modes(const dvi_elastic *elastic, const dvi_modes_options *options,
+                             double *eigenvalue, double *mode, int64_t *zeros)
+{
+  const dvi_modes_options defaults = {.size = sizeof defaults};
+  if (options == NULL) options = &defaults;
+  if (elastic == NULL || eigenvalue == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "elastic: a solid and eigenvalues are needed");
+  if (options->size != sizeof defaults)
+    return dvi__fail(DVI_BAD_ARGUMENT, "elastic: set options.size to sizeof(dvi_modes_options)");
+  modes m = {.elastic = elastic, .count = options->count != 0 ? options->count : DEFAULT_COUNT};
+  dvi_status status = dvi__solid_rest_stiffness(elastic, &m.K);
+  if (status == DVI_OK) status = make_mass(elastic, &m.mass);
+  if (status == DVI_OK) status = dvi__rigid_create(elastic, &m.rigid);
+  if (status == DVI_OK) status = find(&m, options->shift, eigenvalue, mode);
+  if (status == DVI_OK && zeros != NULL) *zeros = m.rigid.count;
+  clear(&m);
+  return status;
+}

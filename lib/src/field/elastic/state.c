@@ -1,0 +1,124 @@
+/* Displacements, coordinates, energies and stresses of a solid. */
+#include <string.h>
+
+#include "core/status.h"
+#include "field/elastic/cell.h"
+
+/* ---- displacements and coordinates ---- */
+
+dvi_status dvi_elastic_lift(const dvi_elastic *elastic, double t, const double *q, const double *v,
+                            double *u, double *rate)
+{
+  if (elastic == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "elastic: a solid is needed");
+  const int n = elastic->n;
+  for (int64_t a = 0; a < elastic->vertices; a++) {
+    double at[DVI_ELASTIC_DIMENSION_MAX] = {0}, speed[DVI_ELASTIC_DIMENSION_MAX] = {0};
+    const int returned = dvi__solid_given(elastic, a, t, at, speed);
+    if (returned != 0) return dvi__solid_refuse_given(elastic, a, returned);
+    for (int i = 0; i < n; i++) {
+      const int k = elastic->unknown[a * n + i];
+      if (u != NULL) u[a * n + i] = k < 0 ? at[i] : q != NULL ? q[k] : 0;
+      if (rate != NULL) rate[a * n + i] = k < 0 ? speed[i] : v != NULL ? v[k] : 0;
+    }
+  }
+  return DVI_OK;
+}
+
+void dvi_elastic_project(const dvi_elastic *elastic, const double *u, const double *rate, double *q,
+                         double *v, double *p)
+{
+  if (elastic == NULL) return;
+  const int n = elastic->n;
+  for (int64_t k = 0; k < elastic->vertices * n; k++) {
+    const int to = elastic->unknown[k];
+    const double speed = rate != NULL ? rate[k] : 0;
+    if (to < 0) continue;
+    if (q != NULL) q[to] = u != NULL ? u[k] : 0;
+    if (v != NULL) v[to] = speed;
+    if (p != NULL) p[to] = elastic->mass[k / n] * speed;
+  }
+}
+
+/* ---- energies ---- */
+
+static dvi_status refuse_load(const dvi_elastic *e, int64_t cell, int returned)
+{
+  const dvi__cell_name name = dvi__name_cell(e->mesh, e->n, cell);
+  return dvi__fail(DVI_CALLBACK_FAILED, "elastic: a load returned %d at %s", returned, name.text);
+}
+
+static dvi_status add_energies(const dvi_elastic *e, int64_t cell, double t, const double *u,
+                               const double *rate, dvi_elastic_energies *sum)
+{
+  const int n = e->n, numbers = (n + 1) * n;
+  const double part = e->materials[e->material[cell]].rho * e->volume[cell] / (n + 1);
+  double own[DVI__SOLID_NUMBERS], speed[DVI__SOLID_NUMBERS] = {0}, f[DVI__SOLID_NUMBERS] = {0},
+                                  stored;
+  dvi__solid_gather(e, cell, u, own);
+  if (rate != NULL) dvi__solid_gather(e, cell, rate, speed);
+  int returned = dvi__solid_stored(e, cell, own, &stored);
+  if (returned != 0) return dvi__solid_refuse(e, cell, returned);
+  sum->stored += stored;
+  returned = dvi__solid_add_load(e, cell, t, f);
+  if (returned != 0) return refuse_load(e, cell, returned);
+  for (int k = 0; k < numbers; k++) {
+    sum->kinetic += part * speed[k] * speed[k] / 2;
+    sum->load -= f[k] * own[k];
+  }
+  return DVI_OK;
+}
+
+dvi_status dvi_elastic_energy(const dvi_elastic *elastic, double t, const double *u,
+                              const double *rate, const char *part, dvi_elastic_energies *energies)
+{
+  if (elastic == NULL || u == NULL || energies == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "elastic: a solid, displacements and a place for energies are needed");
+  int64_t count;
+  const char *name = part != NULL ? part : "all";
+  const int *cell = dvi_mesh_part_cells(elastic->mesh, name, elastic->n, &count);
+  if (count <= 0)
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "elastic: the energy of part \"%s\" is asked, %s: name a part of %s", name,
+                     count < 0 ? "which the mesh has not" : "which has no cells",
+                     elastic->n == 3 ? "tetrahedra" : "triangles");
+  *energies = (dvi_elastic_energies){0};
+  for (int64_t i = 0; i < count; i++) DVI_TRY(add_energies(elastic, cell[i], t, u, rate, energies));
+  return DVI_OK;
+}
+
+/* ---- stresses ---- */
+
+/* P F^T/J = (P + P H^T)/J. That of the linear law is P. Returns as dvi__solid_force. */
+static int find_stress(const dvi_elastic *e, int64_t cell, const double *u, double *stress)
+{
+  const int n = e->n;
+  const dvi__solid_material *material = e->materials + e->material[cell];
+  double own[DVI__SOLID_NUMBERS], H[DVI__SOLID_ENTRIES], P[DVI__SOLID_ENTRIES];
+  dvi__solid_gather(e, cell, u, own);
+  dvi__solid_strain(e, cell, own, H);
+  const double J = 1 + dvi__trace(n, H) + dvi__higher_volume(n, H);
+  const int is_linear = material->law == DVI_ELASTIC_LINEAR,
+            returned = dvi__law_stress(n, material, H, P);
+  if (returned != 0) return returned;
+  if (!is_linear && !(J > 0)) return 1;
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < n; j++) {
+      double sum = P[i * n + j];
+      for (int k = 0; k < n && !is_linear; k++) sum += P[i * n + k] * H[j * n + k];
+      stress[i * n + j] = is_linear ? sum : sum / J;
+    }
+  return 0;
+}
+
+dvi_status dvi_elastic_stress(const dvi_elastic *elastic, const double *u, double *stress)
+{
+  if (elastic == NULL || u == NULL || stress == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "elastic: a solid, displacements and a place for stresses are needed");
+  for (int64_t c = 0; c < elastic->cells; c++) {
+    const int returned = find_stress(elastic, c, u, stress + c * elastic->n * elastic->n);
+    if (returned != 0) return dvi__solid_refuse(elastic, c, returned);
+  }
+  return DVI_OK;
+}

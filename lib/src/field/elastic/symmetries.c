@@ -1,0 +1,128 @@
+/* The translations and turns that conditions, loads, obstacles and laws of a solid allow. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "field/elastic/system.h"
+
+enum { AXES = DVI_ELASTIC_DIMENSION_MAX };
+
+/* ---- generators ---- */
+
+static int translate(const double *q, double *xi, void *user)
+{
+  const dvi__solid_symmetry *of = user;
+  const dvi_elastic *e = of->elastic;
+  (void)q;
+  for (int64_t k = 0; k < e->vertices * e->n; k++)
+    if (e->unknown[k] >= 0) xi[e->unknown[k]] = k % e->n == of->axis;
+  return 0;
+}
+
+/* A turn about an axis moves the two components behind it, in a cycle, a and b. */
+static int turn(const double *q, double *xi, void *user)
+{
+  const dvi__solid_symmetry *of = user;
+  const dvi_elastic *e = of->elastic;
+  const int a = (of->axis + 1) % AXES, b = (of->axis + 2) % AXES;
+  memset(xi, 0, (size_t)e->unknowns * sizeof *xi);
+  for (int64_t v = 0; v < e->vertices; v++) {
+    const int *k = e->unknown + v * e->n;
+    const double *X = e->point + v * e->n;
+    xi[k[a]] = -(X[b] + (of->is_small ? 0 : q[k[b]]));
+    xi[k[b]] = X[a] + (of->is_small ? 0 : q[k[a]]);
+  }
+  return 0;
+}
+
+/* ---- what allows them ---- */
+
+/* Tell if no node's component is given, and if none has a load, as far as is known. */
+static int is_untouched(const dvi__solid_system *s, int component)
+{
+  const dvi_elastic *e = s->elastic;
+  if (e->load_count > 0 && !e->has_steady_loads) return 0;
+  for (int64_t v = 0; v < e->vertices; v++) {
+    const int k = e->unknown[v * e->n + component];
+    if (k < 0 || (s->load != NULL && s->load[k] != 0)) return 0;
+  }
+  return 1;
+}
+
+/* Tell if no obstacle is in the way of a translation or of a turn. */
+static int passes_obstacles(const dvi_elastic *e, int axis, int is_turn)
+{
+  const int a = (axis + 1) % AXES, b = (axis + 2) % AXES;
+  for (int i = 0; i < e->obstacles; i++) {
+    const dvi_obstacle *o = e->obstacle + i;
+    const int is_plane = o->kind == DVI_OBSTACLE_PLANE;
+    const double *fixed = is_plane ? o->normal : o->point;
+    if (o->friction > 0) return 0;
+    if (is_turn ? fixed[a] != 0 || fixed[b] != 0 : !is_plane || o->normal[axis] != 0) return 0;
+  }
+  return 1;
+}
+
+/* An energy has the same values after rotations if P F^T, which is J times Cauchy's stress, is
+ * symmetric. */
+static int is_objective(int n, const dvi__solid_material *m)
+{
+  double H[DVI__SOLID_ENTRIES] = {0}, P[DVI__SOLID_ENTRIES] = {0};
+  for (int sample = 1; sample <= 3; sample++) {
+    double most = 0, skew = 0;
+    for (int k = 0; k < n * n; k++) H[k] = 0.05 * sample * sin(1.7 * k + sample);
+    if (dvi__law_stress(n, m, H, P) != 0) return 0;
+    for (int i = 0; i < n; i++)
+      for (int j = 0; j < n; j++) {
+        double sum = P[i * n + j] - P[j * n + i];
+        for (int k = 0; k < n; k++)
+          sum += P[i * n + k] * H[j * n + k] - P[j * n + k] * H[i * n + k];
+        skew = fmax(skew, fabs(sum));
+        most = fmax(most, fabs(P[i * n + j]));
+      }
+    if (skew > 1e-10 * most) return 0;
+  }
+  return 1;
+}
+
+int dvi__solid_is_linear(const dvi_elastic *e)
+{
+  for (int m = 0; m < e->material_count; m++)
+    if (e->materials[m].law != DVI_ELASTIC_LINEAR) return 0;
+  return 1;
+}
+
+static int are_objective(const dvi_elastic *e)
+{
+  for (int m = 0; m < e->material_count; m++)
+    if (!is_objective(e->n, e->materials + m)) return 0;
+  return 1;
+}
+
+/* ---- terms ---- */
+
+static void add(dvi__solid_system *s, int axis, int is_turn, const char *name)
+{
+  dvi__solid_symmetry *of = s->symmetry + s->symmetries;
+  *of = (dvi__solid_symmetry){.elastic = s->elastic,
+                              .axis = axis,
+                              .is_turn = is_turn,
+                              .is_small = dvi__solid_is_linear(s->elastic)};
+  (void)snprintf(of->name, sizeof of->name, "%s", name);
+  s->symmetry_term[s->symmetries++] = (dvi_symmetry){
+      .name = of->name, .generator = is_turn ? turn : translate, .user = of};
+}
+
+void dvi__solid_find_symmetries(dvi__solid_system *s)
+{
+  static const char *const momentum[] = {"momentum_x", "momentum_y", "momentum_z"},
+                           *const angular[] = {"angular_x", "angular_y", "angular_z"};
+  const dvi_elastic *e = s->elastic;
+  const int turns = dvi__solid_is_linear(e) || are_objective(e);
+  for (int i = 0; i < e->n && i < AXES; i++)
+    if (is_untouched(s, i) && passes_obstacles(e, i, 0)) add(s, i, 0, momentum[i]);
+  for (int i = e->n == 3 ? 0 : 2; i < AXES && turns; i++)
+    if (is_untouched(s, (i + 1) % AXES) && is_untouched(s, (i + 2) % AXES) &&
+        passes_obstacles(e, i, 1))
+      add(s, i, 1, e->n == 3 ? angular[i] : "angular");
+}

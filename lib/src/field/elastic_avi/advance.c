@@ -1,0 +1,72 @@
+/* The run, its failures, and the alarm. Steps of their own are never stable, only slow to show it.
+ * So the energy is looked at once in 64 of the longest steps, at times that do not depend on how
+ * the way is cut. The state of the last look is kept: after a failure the run begins there again,
+ * and ends before the event that failed. */
+#include <float.h>
+#include <math.h>
+
+#include "core/status.h"
+#include "field/elastic_avi/plan.h"
+#include "field/step/alarm.h"
+
+enum { STEPS_BETWEEN_CHECKS = 64 };
+
+static const double roundings = 4 * DBL_EPSILON;
+
+/* Stand before the first event that fails up to a limit. */
+static dvi_status stand_before(dvi__solid_avi *avi, double limit)
+{
+  const double before = avi->clock.t;
+  dvi__solid_take_back(avi);
+  const dvi__solid_halt halt = dvi__solid_run(avi, limit);
+  dvi__solid_take_back(avi);
+  (void)dvi__solid_run(avi, nextafter(halt.t, -INFINITY));
+  avi->clock.t = fmin(fmax(avi->clock.t, before), limit);
+  (void)dvi__solid_refuse(avi->solid, avi->name[halt.cell], halt.returned);
+  return dvi__fail_in(halt.returned > 0 ? DVI_SINGULAR : DVI_CALLBACK_FAILED, "%s: at t = %g",
+                      avi->method, halt.t);
+}
+
+static dvi_status run(dvi__solid_avi *avi, double t)
+{
+  const double limit = t + roundings * fmax(fabs(t), fabs(avi->clock.t0)), before = avi->clock.t;
+  avi->view->t = (double)NAN; /* events of the present time may be left after a failure */
+  const dvi__solid_halt halt = dvi__solid_run(avi, limit);
+  if (halt.returned != 0) {
+    avi->clock.t = before;
+    return stand_before(avi, limit);
+  }
+  avi->clock.t = t;
+  return DVI_OK;
+}
+
+static double time_of_check(const dvi__solid_avi *avi)
+{
+  return avi->clock.t0 + (double)(avi->clock.checks + 1) * (STEPS_BETWEEN_CHECKS * avi->longest);
+}
+
+static dvi_status compare_energy(dvi__solid_avi *avi)
+{
+  const dvi__alarm_words words = {
+      .method = avi->method,
+      .reference = "the start and what loads and conditions worked",
+      .remedy = "the steps are in resonance or too long for these strains; take shorter ones, and "
+                "powers of 2 of the shortest",
+      .last = "shorter steps"};
+  DVI_TRY(dvi__solid_avi_look(avi));
+  const dvi_elastic_energies *e = &avi->view->energies;
+  const dvi_status status = dvi__judge_growth(&words, avi->clock.t, e->kinetic + e->stored,
+                                              avi->view->growth, &avi->clock.allowed);
+  if (status != DVI_NOT_FINITE) avi->clock.checks++;
+  if (status != DVI_NOT_FINITE) dvi__solid_keep(avi);
+  return status;
+}
+
+dvi_status dvi__solid_avi_advance(dvi__solid_avi *avi, double t)
+{
+  while (time_of_check(avi) <= t) {
+    DVI_TRY(run(avi, time_of_check(avi)));
+    DVI_TRY(compare_energy(avi));
+  }
+  return run(avi, t);
+}

@@ -1,0 +1,111 @@
+/* Making the steps of a solid. */
+#include <limits.h>
+#include <math.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "field/elastic_avi/layout.h"
+
+static void destroy_view(dvi__solid_view *view)
+{
+  if (view == NULL) return;
+  dvi__release(view->u);
+  dvi__release(view->rate);
+  dvi__release(view);
+}
+
+void dvi__solid_avi_destroy(dvi__solid_avi **avi)
+{
+  dvi__solid_avi *s = *avi;
+  if (s == NULL) return;
+  void *const memory[] = {s->name,    s->corner,     s->node_kind, s->cell_kind, s->step,
+                          s->decay,   s->viscous,    s->block,     s->kept,      s->cell_of,
+                          s->cell_start};
+  for (size_t i = 0; i < sizeof memory / sizeof *memory; i++) dvi__release(memory[i]);
+  destroy_view(s->view);
+  dvi__calendar_destroy(&s->calendar);
+  dvi__release(s);
+  *avi = NULL;
+}
+
+static dvi_status no_memory(const dvi__solid_avi *s)
+{
+  return dvi__fail(DVI_NO_MEMORY, "%s: no memory for %lld cells", s->method, (long long)s->cells);
+}
+
+static dvi_status allocate(dvi__solid_avi *s)
+{
+  const dvi_elastic *e = s->solid;
+  const int64_t width = s->n + 1, numbers = s->vertices * s->n;
+  int decays = 0;
+  for (int i = 0; i < e->material_count; i++) decays |= e->materials[i].alpha > 0;
+  s->name = DVI_NEW(int, s->cells);
+  s->corner = DVI_NEW(int, s->cells * width);
+  s->node_kind = DVI_NEW(uint8_t, s->vertices);
+  s->cell_kind = DVI_NEW(uint8_t, s->cells);
+  s->step = DVI_NEW(double, s->cells);
+  s->viscous = DVI_NEW(int, s->cells);
+  s->cell_start = DVI_NEW(int64_t, s->vertices + 1);
+  s->cell_of = DVI_NEW(int, s->cells * width);
+  s->view = DVI_NEW(dvi__solid_view, 1);
+  if (!s->name || !s->corner || !s->node_kind || !s->cell_kind || !s->step || !s->viscous ||
+      !s->cell_start || !s->cell_of || !s->view)
+    return no_memory(s);
+  s->view->u = DVI_NEW(double, numbers);
+  s->view->rate = DVI_NEW(double, numbers);
+  if (!s->view->u || !s->view->rate) return no_memory(s);
+  if (decays && (s->decay = DVI_NEW(double, s->vertices)) == NULL) return no_memory(s);
+  return DVI_OK;
+}
+
+/* Whether a force, a load or a condition can fail in the course of a run. */
+static int can_fail(const dvi_elastic *e)
+{
+  int can = e->is_driven || (e->load_count > 0 && !e->has_steady_loads);
+  for (int i = 0; i < e->material_count; i++) can |= e->materials[i].law > DVI_ELASTIC_SVK;
+  return can;
+}
+
+static dvi_status make_calendar(dvi__solid_avi *s)
+{
+  double rate = 0;
+  for (int64_t c = 0; c < s->active; c++) rate += 1 / s->step[c];
+  return dvi__calendar_create(s->active, s->longest, rate, &s->calendar);
+}
+
+dvi_status dvi__solid_avi_create(const dvi_elastic *solid, const dvi__solid_request *request,
+                                 dvi__solid_avi **avi)
+{
+  dvi__solid_plan plan;
+  *avi = NULL;
+  DVI_TRY(dvi__solid_plan_make(solid, request, &plan));
+  dvi__solid_avi *s = DVI_NEW(dvi__solid_avi, 1);
+  if (s == NULL) {
+    dvi__solid_plan_clear(&plan);
+    return dvi__fail(DVI_NO_MEMORY, "avi: no memory");
+  }
+  *s = (dvi__solid_avi){.solid = solid,
+                        .method = request->is_equal ? "verlet" : "avi",
+                        .n = solid->n,
+                        .vertices = solid->vertices,
+                        .cells = solid->cells,
+                        .is_free = request->is_free || request->is_queued,
+                        .is_equal = request->is_equal,
+                        .is_linear = request->is_linear,
+                        .may_fail = can_fail(solid),
+                        .classes = plan.classes,
+                        .shortest = plan.shortest,
+                        .longest = plan.longest,
+                        .bound = plan.tightest,
+                        .band = request->band > 0 ? request->band : 2,
+                        .threads = request->threads};
+  dvi_status status = allocate(s);
+  if (status == DVI_OK) status = dvi__solid_lay_out(&plan, s);
+  if (status == DVI_OK && s->is_free) status = make_calendar(s);
+  dvi__solid_plan_clear(&plan);
+  if (status == DVI_OK)
+    *avi = s;
+  else
+    dvi__solid_avi_destroy(&s);
+  return status;
+}

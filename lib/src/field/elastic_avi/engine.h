@@ -1,0 +1,172 @@
+/* What asynchronous steps of a solid store, and the flight of a node from one event to the next.
+ *
+ * Every cell K has its own steps h_K, and every node its clock tau_a. The discrete action of a run
+ * is
+ *
+ *     S = sum over nodes a and their intervals of  m_a |v_a|^2 (t_a^{i+1} - t_a^i)/2
+ *       - sum over cells K and their times t_K^j = t_0 + j h_K of  h_K V_K W(F_K)
+ *
+ * with v_a constant between two events of the node, and a sum over j that begins with h_K/2. A node
+ * has an event whenever one of its cells has. With f_K the forces of K, stationarity says
+ *
+ *     u_a += v_a (t - tau_a), tau_a = t, then v_a += h_K f_K,a/m_a  for each node a of the cell K.
+ *
+ * Events happen in the order of their times, and those of one time in the order of the cells' own
+ * numbers. Events of cells without a common node commute to the last bit.
+ *
+ * Source: Lew, Marsden, Ortiz and West 2003, with the half kick at the start that it leaves out;
+ * Kale and Lew 2007 for threads. */
+#ifndef DVI_FIELD_ELASTIC_AVI_ENGINE_H
+#define DVI_FIELD_ELASTIC_AVI_ENGINE_H
+#include "field/elastic/cell.h"
+#include "field/elastic_avi/calendar.h"
+#include "march/sections.h"
+
+enum {
+  DVI__SOLID_CLASSES = 31, /* steps are at most 2^30 times the shortest one */
+  DVI__SOLID_AXES = 3
+};
+
+/* A node, in a line of the cache. In a plane the third components are 0. */
+typedef struct dvi__solid_node {
+  double u[DVI__SOLID_AXES], v[DVI__SOLID_AXES]; /* u at tau, and v from then on */
+  double tau;
+  double inverse; /* 1/m */
+} dvi__solid_node;
+
+/* What a node has beside a free flight. The first bits are the components that are given. */
+enum {
+  DVI__NODE_GIVEN = 7,
+  DVI__NODE_DRIVEN = 8,  /* what is given depends on time */
+  DVI__NODE_DECAYS = 16, /* a damping of its velocity */
+  DVI__NODE_MEETS = 32   /* obstacles */
+};
+
+/* What a cell has beside its stored energy. */
+enum {
+  DVI__CELL_GUARDED = 1, /* one of its nodes does not fly freely */
+  DVI__CELL_LOADED = 2,
+  DVI__CELL_VISCOUS = 4
+};
+
+/* The clock of a run. */
+typedef struct dvi__solid_clock {
+  double t0, t;
+  double start_energy, allowed; /* the band of the growth, doubled after each alarm */
+  int64_t slot;                 /* shortest steps since t0, of classes */
+  int64_t events, checks;
+} dvi__solid_clock;
+
+/* The numbers that change, in one block. Cells have their own numbers. */
+typedef struct dvi__solid_state {
+  dvi__solid_node *node; /* [vertices] */
+  int64_t *count;        /* [cells] of free steps: events so far */
+  double *worked;        /* [cells] sizes of works of loads and of driven nodes. Or empty */
+  double *stretch;       /* [viscous*12] displacements that the damping has answered so far */
+  int64_t *hits;         /* [vertices] with obstacles */
+} dvi__solid_state;
+
+/* What an observation computed beside the state. */
+typedef struct dvi__solid_view {
+  double t;         /* NaN if nothing is valid */
+  double *u, *rate; /* [vertices*n] */
+  dvi_elastic_energies energies;
+  double growth;
+} dvi__solid_view;
+
+typedef struct dvi__solid_avi {
+  const dvi_elastic *solid;
+  const char *method;
+  int n;
+  int64_t vertices, cells, active; /* cells with events have the first numbers */
+  int *name;                       /* [cells] the mesh's numbers */
+  int *corner;                     /* [cells*(n+1)] */
+  uint8_t *node_kind, *cell_kind;
+  double *step;  /* [cells] */
+  double *decay; /* [vertices] rates, or empty */
+  int *viscous;  /* [cells] place in `stretch`, or -1. NULL if there are none */
+  int64_t viscous_count;
+  int64_t *cell_start;       /* [vertices+1] */
+  int *cell_of;              /* own numbers of the cells of a vertex, ascending */
+  int is_equal;              /* one step for all */
+  int is_free;               /* events are taken from a calendar */
+  int is_linear;             /* forces are those of small strains at rest */
+  int may_fail;              /* forces, loads or conditions */
+  int classes;
+  int64_t class_end[DVI__SOLID_CLASSES];
+  double shortest, longest, bound, band;
+  int threads;
+  struct dvi__solid_members *members; /* NULL for a single thread */
+  dvi__calendar *calendar;            /* of free steps of a single thread */
+  size_t size;                        /* bytes of the block */
+  void *block, *kept;                 /* the state, and that of an earlier time */
+  dvi__solid_state state;
+  dvi__solid_clock clock, kept_clock;
+  dvi__solid_view *view;
+} dvi__solid_avi;
+
+/* Carry a node that has a kind to the time t. Returns 0, or as dvi__solid_given. */
+int dvi__solid_guide(const dvi__solid_avi *avi, int vertex, double t, dvi__solid_node *node,
+                     int64_t *hits);
+
+/* Carry a node to the time t. Returns as dvi__solid_guide. */
+static inline int dvi__solid_fly(const dvi__solid_avi *avi, int vertex, double t,
+                                 dvi__solid_node *node, int64_t *hits)
+{
+  if (avi->node_kind[vertex] != 0) return dvi__solid_guide(avi, vertex, t, node, hits);
+  const double span = t - node->tau;
+  for (int i = 0; i < DVI__SOLID_AXES; i++) node->u[i] += node->v[i] * span;
+  node->tau = t;
+  return 0;
+}
+
+/* Fly along v for the length s, and bounce from obstacles. */
+void dvi__solid_bounce(const dvi__solid_avi *avi, int vertex, double length, dvi__solid_node *node,
+                       int64_t *hits);
+
+/* Give the forces of a cell's stored energy and its loads at displacements u [(n+1)*n], and those
+ * of the loads alone, 0 without. Returns as dvi__solid_force. */
+int dvi__solid_pull(const dvi__solid_avi *avi, int64_t c, double t, const double *u, double *f,
+                    double *load);
+
+/* Give beta times the stiffness at rest times w [(n+1)*n]. */
+void dvi__solid_resist(const dvi__solid_avi *avi, int64_t c, const double *w, double *f);
+
+/* Let an event of a cell happen. Returns as dvi__solid_force. */
+int dvi__solid_act(dvi__solid_avi *avi, int64_t c, double t);
+
+/* The time of a slot, and of an event of a cell. */
+static inline double dvi__solid_slot_time(const dvi__solid_avi *avi, int64_t slot)
+{
+  return avi->clock.t0 + (double)slot * avi->shortest;
+}
+
+static inline double dvi__solid_event_time(const dvi__solid_avi *avi, int64_t c, int64_t count)
+{
+  return avi->clock.t0 + (double)count * avi->step[c];
+}
+
+/* The largest class whose steps end in a slot. */
+int dvi__solid_class_of_slot(const dvi__solid_avi *avi, int64_t slot);
+
+/* A run up to a time, and what stopped it. */
+typedef struct dvi__solid_halt {
+  int returned; /* 0, or as dvi__solid_force */
+  int64_t cell;
+  double t;
+} dvi__solid_halt;
+
+/* Let the events up to a time happen. */
+dvi__solid_halt dvi__solid_run(dvi__solid_avi *avi, double limit);
+
+/* The same on members. Which event stops them is left open. */
+dvi__solid_halt dvi__solid_run_members(dvi__solid_avi *avi, double limit);
+
+/* Order the calendar after the counts. */
+void dvi__solid_order(dvi__solid_avi *avi);
+
+/* Keep the state, and take it back. */
+void dvi__solid_keep(dvi__solid_avi *avi);
+void dvi__solid_take_back(dvi__solid_avi *avi);
+
+#endif

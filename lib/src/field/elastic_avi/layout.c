@@ -1,0 +1,148 @@
+/* Cells are stored in the order in which they act. With classes the cells that are due in a slot
+ * are the first ones. In a class, and with free steps, they keep the mesh's order, and with it what
+ * that has of locality. */
+#include "field/elastic_avi/layout.h"
+
+#include <math.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+
+static dvi_status no_memory(const dvi__solid_avi *avi)
+{
+  return dvi__fail(DVI_NO_MEMORY, "%s: no memory for %lld cells", avi->method,
+                   (long long)avi->cells);
+}
+
+/* ---- cells ---- */
+
+/* Number cells by their classes. Those without events come last. */
+static void number_cells(const dvi__solid_plan *plan, dvi__solid_avi *avi)
+{
+  int64_t begin[DVI__SOLID_CLASSES + 2] = {0};
+  for (int64_t c = 0; c < avi->cells; c++)
+    begin[1 + (isinf(plan->step[c]) ? plan->classes : plan->class[c])]++;
+  for (int k = 0; k <= plan->classes; k++) begin[k + 1] += begin[k];
+  for (int k = 0; k < plan->classes; k++) avi->class_end[k] = begin[k + 1];
+  avi->active = begin[plan->classes];
+  for (int64_t c = 0; c < avi->cells; c++) {
+    const int64_t i = begin[isinf(plan->step[c]) ? plan->classes : plan->class[c]]++;
+    avi->name[i] = (int)c;
+    avi->step[i] = plan->step[c];
+    for (int a = 0; a <= avi->n; a++)
+      avi->corner[i * (avi->n + 1) + a] = avi->solid->vertex[c * (avi->n + 1) + a];
+  }
+}
+
+static void list_cells(dvi__solid_avi *avi)
+{
+  const int width = avi->n + 1;
+  int64_t *const start = avi->cell_start;
+  for (int64_t i = 0; i < avi->active * width; i++) start[avi->corner[i] + 1]++;
+  for (int64_t v = 0; v < avi->vertices; v++) start[v + 1] += start[v];
+  for (int64_t i = 0; i < avi->active * width; i++)
+    avi->cell_of[start[avi->corner[i]]++] = (int)(i / width);
+  for (int64_t v = avi->vertices; v > 0; v--) start[v] = start[v - 1];
+  start[0] = 0;
+}
+
+/* ---- kinds ---- */
+
+/* Give the components that are given, and whether one of them depends on time. */
+static int conditions_of(const dvi_elastic *e, int64_t vertex)
+{
+  int kind = 0;
+  for (int i = 0; i < e->n; i++) {
+    const int64_t at = vertex * e->n + i;
+    if (e->unknown[at] >= 0) continue;
+    kind |= 1 << i;
+    const dvi_elastic_condition *condition = e->conditions + e->condition[at];
+    if (condition->displacement != NULL && !condition->is_steady) kind |= DVI__NODE_DRIVEN;
+  }
+  return kind;
+}
+
+static void find_decay(dvi__solid_avi *avi)
+{
+  const dvi_elastic *e = avi->solid;
+  for (int64_t i = 0; i < e->cells * (e->n + 1); i++) {
+    const dvi__solid_material *m = e->materials + e->material[i / (e->n + 1)];
+    avi->decay[e->vertex[i]] += m->alpha * m->rho * e->volume[i / (e->n + 1)] / (e->n + 1);
+  }
+  for (int64_t v = 0; v < e->vertices; v++) avi->decay[v] /= e->mass[v];
+}
+
+static void find_node_kinds(dvi__solid_avi *avi)
+{
+  const dvi_elastic *e = avi->solid;
+  const int all = (1 << e->n) - 1;
+  for (int64_t v = 0; v < e->vertices; v++) {
+    int kind = conditions_of(e, v);
+    if (avi->is_linear) kind &= DVI__NODE_GIVEN;
+    if (avi->decay != NULL && avi->decay[v] > 0) kind |= DVI__NODE_DECAYS;
+    if (e->obstacles > 0 && e->is_outer[v] && (kind & all) != all && !avi->is_linear)
+      kind |= DVI__NODE_MEETS;
+    avi->node_kind[v] = (uint8_t)kind;
+  }
+}
+
+static void find_cell_kinds(dvi__solid_avi *avi)
+{
+  const dvi_elastic *e = avi->solid;
+  for (int64_t c = 0; c < avi->cells; c++) {
+    const int64_t cell = avi->name[c];
+    int kind = 0;
+    for (int a = 0; a <= avi->n; a++)
+      if (avi->node_kind[avi->corner[c * (avi->n + 1) + a]] != 0) kind |= DVI__CELL_GUARDED;
+    if (e->load_start != NULL && e->load_start[cell + 1] > e->load_start[cell] && !avi->is_linear)
+      kind |= DVI__CELL_LOADED;
+    if (e->materials[e->material[cell]].beta > 0) {
+      kind |= DVI__CELL_VISCOUS;
+      avi->viscous[c] = (int)avi->viscous_count++;
+    }
+    avi->cell_kind[c] = (uint8_t)kind;
+  }
+}
+
+/* ---- the state ---- */
+
+typedef struct part {
+  void **place;
+  size_t size;
+} part;
+
+static dvi_status lay_out_state(dvi__solid_avi *avi)
+{
+  dvi__solid_state *s = &avi->state;
+  const size_t vertices = (size_t)avi->vertices, cells = (size_t)avi->cells;
+  const int is_worked = !avi->is_linear && (avi->solid->load_count > 0 || avi->solid->is_driven),
+            meets = !avi->is_linear && avi->solid->obstacles > 0;
+  const part parts[] = {
+      {(void **)&s->node, vertices * sizeof *s->node},
+      {(void **)&s->count, avi->is_free ? cells * sizeof *s->count : 0},
+      {(void **)&s->worked, is_worked ? cells * sizeof *s->worked : 0},
+      {(void **)&s->stretch,
+       (size_t)avi->viscous_count * DVI__SOLID_NUMBERS * sizeof *s->stretch},
+      {(void **)&s->hits, meets ? vertices * sizeof *s->hits : 0}};
+  avi->size = 0;
+  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) avi->size += parts[i].size;
+  avi->block = DVI_NEW(char, avi->size);
+  avi->kept = DVI_NEW(char, avi->size);
+  if (avi->block == NULL || avi->kept == NULL) return no_memory(avi);
+  char *next = avi->block;
+  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
+    *parts[i].place = parts[i].size > 0 ? next : NULL;
+    next += parts[i].size;
+  }
+  return DVI_OK;
+}
+
+dvi_status dvi__solid_lay_out(const dvi__solid_plan *plan, dvi__solid_avi *avi)
+{
+  number_cells(plan, avi);
+  list_cells(avi);
+  if (avi->decay != NULL) find_decay(avi);
+  find_node_kinds(avi);
+  find_cell_kinds(avi);
+  return lay_out_state(avi);
+}

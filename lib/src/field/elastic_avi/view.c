@@ -1,0 +1,155 @@
+/* What can be seen at a time between events, beside the state.
+ *
+ * Nodes fly on from their last event, and cells pay for what lies between t and the middle of the
+ * interval that they have paid for,
+ *
+ *     u_a(t) = u_a + v_a (t - tau_a),   v_a(t) = v_a + sum over K of f_K(u(t)) (t - t_K - h_K/2)/m_a
+ *
+ * which is of order 2 at any t. A damping beta has answered w of event.c, and owes what u(t) differs
+ * from it; where alpha is not 0, what cells owe is that of field/step/decay.h. */
+#include <math.h>
+#include <string.h>
+
+#include "core/status.h"
+#include "field/elastic_avi/plan.h"
+#include "field/step/decay.h"
+
+/* The time of the last event of a cell. */
+static double time_of_cell(const dvi__solid_avi *avi, int64_t c)
+{
+  if (avi->is_free) return dvi__solid_event_time(avi, c, avi->state.count[c]);
+  int j = 0;
+  while (c >= avi->class_end[j]) j++;
+  return dvi__solid_slot_time(avi, avi->clock.slot >> j << j);
+}
+
+/* Give a node at the march's time. */
+static dvi_status see_node(const dvi__solid_avi *avi, int vertex, dvi__solid_node *node)
+{
+  *node = avi->state.node[vertex];
+  const int returned = dvi__solid_fly(avi, vertex, avi->clock.t, node, NULL);
+  return returned == 0 ? DVI_OK : dvi__solid_refuse_given(avi->solid, vertex, returned);
+}
+
+/* What a cell owes to its nodes, over their masses [(n+1)*n]. */
+static dvi_status see_debt(const dvi__solid_avi *avi, int64_t c, const double *u, double *debt)
+{
+  const int n = avi->n;
+  const double since = avi->clock.t - time_of_cell(avi, c);
+  double f[DVI__SOLID_NUMBERS], load[DVI__SOLID_NUMBERS], answer[DVI__SOLID_NUMBERS] = {0};
+  const int returned = dvi__solid_pull(avi, c, avi->clock.t, u, f, load);
+  if (returned != 0) return dvi__solid_refuse(avi->solid, avi->name[c], returned);
+  if (avi->cell_kind[c] & DVI__CELL_VISCOUS) {
+    const double *paid = avi->state.stretch + (int64_t)DVI__SOLID_NUMBERS * avi->viscous[c];
+    double w[DVI__SOLID_NUMBERS];
+    for (int k = 0; k < (n + 1) * n; k++) w[k] = u[k] - paid[k];
+    dvi__solid_resist(avi, c, w, answer);
+  }
+  for (int a = 0; a <= n; a++) {
+    const int vertex = avi->corner[c * (n + 1) + a];
+    const double owed = dvi__decay_owed(avi->decay != NULL ? avi->decay[vertex] : 0, avi->step[c],
+                                        since);
+    for (int i = 0; i < n; i++)
+      debt[a * n + i] = avi->node_kind[vertex] & 1 << i ? 0
+                                                        : avi->state.node[vertex].inverse *
+                                                              (owed * f[a * n + i] +
+                                                               answer[a * n + i]);
+  }
+  return DVI_OK;
+}
+
+static dvi_status see_rate(const dvi__solid_avi *avi, int vertex, double *rate)
+{
+  const int n = avi->n;
+  dvi__solid_node node;
+  DVI_TRY(see_node(avi, vertex, &node));
+  for (int i = 0; i < n; i++) rate[i] = node.v[i];
+  for (int64_t k = avi->cell_start[vertex]; k < avi->cell_start[vertex + 1]; k++) {
+    const int64_t c = avi->cell_of[k];
+    const int *corner = avi->corner + c * (n + 1);
+    double u[DVI__SOLID_NUMBERS], debt[DVI__SOLID_NUMBERS];
+    for (int a = 0; a <= n; a++) {
+      DVI_TRY(see_node(avi, corner[a], &node));
+      for (int i = 0; i < n; i++) u[a * n + i] = node.u[i];
+    }
+    DVI_TRY(see_debt(avi, c, u, debt));
+    for (int a = 0; a <= n; a++)
+      for (int i = 0; i < n && corner[a] == vertex; i++) rate[i] += debt[a * n + i];
+  }
+  return DVI_OK;
+}
+
+/* ---- all of it ---- */
+
+static dvi_status see_nodes(const dvi__solid_avi *avi)
+{
+  for (int64_t v = 0; v < avi->vertices; v++) {
+    dvi__solid_node node;
+    DVI_TRY(see_node(avi, (int)v, &node));
+    for (int i = 0; i < avi->n; i++) {
+      avi->view->u[v * avi->n + i] = node.u[i];
+      avi->view->rate[v * avi->n + i] = node.v[i];
+    }
+  }
+  return DVI_OK;
+}
+
+static dvi_status see_debts(const dvi__solid_avi *avi)
+{
+  const int n = avi->n;
+  for (int64_t c = 0; c < avi->active; c++) {
+    double u[DVI__SOLID_NUMBERS], debt[DVI__SOLID_NUMBERS];
+    dvi__solid_gather(avi->solid, avi->name[c], avi->view->u, u);
+    DVI_TRY(see_debt(avi, c, u, debt));
+    for (int k = 0; k < (n + 1) * n; k++)
+      avi->view->rate[(int64_t)avi->corner[c * (n + 1) + k / n] * n + k % n] += debt[k];
+  }
+  return DVI_OK;
+}
+
+static double reference_energy(const dvi__solid_avi *avi)
+{
+  double sum = avi->clock.start_energy;
+  for (int64_t c = 0; c < avi->active && avi->state.worked != NULL; c++) sum += avi->state.worked[c];
+  return sum;
+}
+
+dvi_status dvi__solid_avi_look(const dvi__solid_avi *avi)
+{
+  dvi__solid_view *view = avi->view;
+  if (view->t == avi->clock.t) return DVI_OK;
+  view->t = (double)NAN;
+  DVI_TRY(see_nodes(avi));
+  DVI_TRY(see_debts(avi));
+  DVI_TRY(dvi_elastic_energy(avi->solid, avi->clock.t, view->u, view->rate, NULL, &view->energies));
+  const double reference = reference_energy(avi);
+  view->growth = reference > 0 ? (view->energies.kinetic + view->energies.stored) / reference : 1;
+  view->t = avi->clock.t;
+  return DVI_OK;
+}
+
+/* A few values are computed by themselves, with the same bits. */
+dvi_status dvi__solid_avi_sample(const dvi__solid_avi *avi, int64_t count, const int *component,
+                                 double *u, double *rate)
+{
+  const int n = avi->n;
+  if (component == NULL) count = avi->vertices * n;
+  if (component == NULL && rate != NULL) DVI_TRY(dvi__solid_avi_look(avi));
+  const int is_seen = avi->view->t == avi->clock.t;
+  for (int64_t k = 0; k < count; k++) {
+    const int64_t at = component != NULL ? component[k] : k;
+    double rates[DVI__SOLID_AXES];
+    dvi__solid_node node;
+    if (is_seen) {
+      if (u != NULL) u[k] = avi->view->u[at];
+      if (rate != NULL) rate[k] = avi->view->rate[at];
+    } else if (u != NULL) {
+      DVI_TRY(see_node(avi, (int)(at / n), &node));
+      u[k] = node.u[at % n];
+    } else {
+      DVI_TRY(see_rate(avi, (int)(at / n), rates));
+      rate[k] = rates[at % n];
+    }
+  }
+  return DVI_OK;
+}

@@ -1,0 +1,298 @@
+/* Marches of elastic solids with steps of their own for all cells. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "field/elastic_avi/plan.h"
+#include "support/field/generated.h"
+#include "support/field/solids.h"
+#include "support/suite.h"
+
+static const char *const methods[] = {"avi", "avi:classes=no", "verlet"};
+enum { METHODS = 3, NUMBERS_MOST = 3 * 1000 };
+
+static dvi_march *march_of(const dvi_elastic *solid, const char *method, double fraction)
+{
+  const dvi_march_options options = {
+      .size = sizeof options, .method = method, .fraction = fraction};
+  dvi_march *march = NULL;
+  ck_assert_msg(dvi_elastic_march_create(solid, &options, &march) == DVI_OK, "%s",
+                dvi_last_error());
+  return march;
+}
+
+static void begin(dvi_march *march, const double *u, const double *rate)
+{
+  double E[NUMBERS_MOST];
+  for (int64_t i = 0; i < dvi_march_size(march, DVI_FORM_E) && rate != NULL; i++) E[i] = -rate[i];
+  const dvi_march_state state = {.size = sizeof state, .A = u, .E = rate != NULL ? E : NULL};
+  ck_assert_msg(dvi_march_start(march, &state) == DVI_OK, "%s", dvi_last_error());
+}
+
+static void advance(dvi_march *march, double t)
+{
+  ck_assert_msg(dvi_march_advance(march, t) == DVI_OK, "%s", dvi_last_error());
+}
+
+static double observed(const dvi_march *march, const char *name)
+{
+  double value = 0;
+  for (int i = 0; dvi_march_observable(march, i) != NULL; i++) {
+    if (strcmp(dvi_march_observable(march, i), name) != 0) continue;
+    ck_assert_msg(dvi_march_observe(march, i, &value) == DVI_OK, "%s", dvi_last_error());
+    return value;
+  }
+  ck_abort_msg("no %s", name);
+}
+
+static void sample(const dvi_march *march, dvi_march_form form, double *values)
+{
+  ck_assert_msg(dvi_march_sample(march, form, 0, NULL, values) == DVI_OK, "%s", dvi_last_error());
+}
+
+/* Start the turning block. */
+static dvi_march *spun(const dvi_elastic *solid, const char *method, double fraction, double scale)
+{
+  double rate[NUMBERS_MOST];
+  dvi_march *march = march_of(solid, method, fraction);
+  spin_block(solid, scale, rate);
+  begin(march, NULL, rate);
+  return march;
+}
+
+/* Require equal bits of both forms. */
+static void check_same(const dvi_march *a, const dvi_march *b)
+{
+  double values[2][NUMBERS_MOST];
+  const size_t size = (size_t)dvi_march_size(a, DVI_FORM_A) * sizeof(double);
+  for (int form = 0; form < 2; form++) {
+    sample(a, (dvi_march_form)form, values[0]);
+    sample(b, (dvi_march_form)form, values[1]);
+    ck_assert_mem_eq(values[0], values[1], size);
+  }
+}
+
+/* ---- digits ---- */
+
+/* The corner (1,1,1), the last node, at t = 1, by an independent program. */
+static double corner_error(dvi_elastic_law law, const char *method, double fraction)
+{
+  static const double x[2][3] = {{1.120541854504, 0.880670758168, 1.078836923111},
+                                 {1.121240896990, 0.880808459494, 1.079014224797}};
+  double u[NUMBERS_MOST], worst = 0;
+  dvi_elastic *solid = block(3, 2, 2, law);
+  dvi_march *march = spun(solid, method, fraction, 1);
+  advance(march, 1);
+  sample(march, DVI_FORM_A, u);
+  const int64_t last = dvi_march_size(march, DVI_FORM_A) - 3;
+  for (int i = 0; i < 3; i++)
+    worst = fmax(worst, fabs(1 + u[last + i] - x[law == DVI_ELASTIC_NEO_HOOKEAN][i]));
+  dvi_march_destroy(&march);
+  dvi_elastic_destroy(&solid);
+  return worst;
+}
+
+/* Steps that are no part of the time shift the slope by a tenth. */
+START_TEST(the_free_block_has_its_digits_with_order_2)
+{
+  const dvi_elastic_law law = _i % 2 ? DVI_ELASTIC_NEO_HOOKEAN : DVI_ELASTIC_SVK;
+  const char *method = methods[_i / 2];
+  const double fraction[] = {0.8, 0.4, 0.2, 0.1};
+  double error[4], slope;
+  for (int k = 0; k < 4; k++) error[k] = corner_error(law, method, fraction[k]);
+  slope = log2(error[0] / error[3]) / 3;
+  if (getenv("SHOW")) printf("%s %d: %g %g %g %g slope %g\n", method, law, error[0], error[1], error[2], error[3], slope);
+  ck_assert_double_lt(fabs(slope - 2), 0.2);
+  ck_assert_double_lt(error[3], 1e-5);
+}
+END_TEST
+
+/* ---- laws ---- */
+
+START_TEST(momenta_are_conserved_to_roundings)
+{
+  dvi_elastic *solid = block(3, 2, 2, DVI_ELASTIC_SVK);
+  dvi_march *march = spun(solid, methods[_i], 0.5, 1);
+  static const char *const names[] = {"momentum_x", "momentum_y", "momentum_z",
+                                      "angular_x",  "angular_y",  "angular_z"};
+  double before[6];
+  for (int k = 0; k < 6; k++) before[k] = observed(march, names[k]);
+  advance(march, 20);
+  for (int k = 0; k < 6; k++)
+    ck_assert_double_eq_tol(observed(march, names[k]), before[k], 5e-15);
+  dvi_march_destroy(&march);
+  dvi_elastic_destroy(&solid);
+}
+END_TEST
+
+START_TEST(cuts_and_observations_change_no_bit)
+{
+  dvi_elastic *solid = block(3, 2, 2, DVI_ELASTIC_NEO_HOOKEAN);
+  dvi_march *whole = spun(solid, methods[_i], 0.5, 1), *cut = spun(solid, methods[_i], 0.5, 1);
+  dvi_march_facts facts;
+  dvi_march_facts_of(whole, &facts);
+  advance(whole, 1.5);
+  for (int n = 1; n * facts.step < 1.5; n++) {
+    double E[3 * 27], single;
+    const int cell = n % 81;
+    advance(cut, n * facts.step);
+    advance(cut, n * facts.step * (1 + 4e-16));
+    ck_assert(dvi_march_sample(cut, DVI_FORM_E, 1, &cell, &single) == DVI_OK);
+    sample(cut, DVI_FORM_E, E);
+    ck_assert(single == E[cell]);
+    advance(cut, fmin((n + 0.3) * facts.step, 1.5));
+    (void)observed(cut, "energy");
+  }
+  advance(cut, 1.5);
+  check_same(whole, cut);
+  dvi_march_destroy(&whole);
+  dvi_march_destroy(&cut);
+  dvi_elastic_destroy(&solid);
+}
+END_TEST
+
+START_TEST(a_saved_march_goes_on_with_the_same_bits)
+{
+  char path[64];
+  dvi_elastic *solid = block(3, 2, 2, DVI_ELASTIC_SVK);
+  dvi_march *whole = spun(solid, methods[_i], 0.5, 1), *other = march_of(solid, methods[_i], 0.5),
+            *stranger = march_of(solid, methods[_i], 0.4);
+  (void)snprintf(path, sizeof path, "elastic_avi_%d_%d.state", _i, (int)getpid());
+  advance(whole, 0.7);
+  ck_assert(dvi_march_save(whole, path) == DVI_OK);
+  ck_assert(dvi_march_load(other, path) == DVI_OK);
+  ck_assert(dvi_march_load(stranger, path) == DVI_BAD_FILE);
+  (void)remove(path);
+  advance(whole, 2);
+  advance(other, 2);
+  check_same(whole, other);
+  dvi_march_destroy(&whole);
+  dvi_march_destroy(&other);
+  dvi_march_destroy(&stranger);
+  dvi_elastic_destroy(&solid);
+}
+END_TEST
+
+static void run_request(const dvi_elastic *solid, const dvi__solid_request *request, double t,
+                        double *u)
+{
+  dvi__solid_avi *avi;
+  double rate[NUMBERS_MOST];
+  spin_block(solid, 1, rate);
+  ck_assert_msg(dvi__solid_avi_create(solid, request, &avi) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi__solid_avi_start(avi, 0, NULL, rate) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi__solid_avi_advance(avi, t) == DVI_OK, "%s", dvi_last_error());
+  ck_assert(dvi__solid_avi_sample(avi, 0, NULL, u, NULL) == DVI_OK);
+  ck_assert(dvi__solid_avi_sample(avi, 0, NULL, NULL, u + NUMBERS_MOST) == DVI_OK);
+  dvi__solid_avi_destroy(&avi);
+}
+
+START_TEST(classes_have_the_bits_of_the_calendar)
+{
+  static double a[2 * NUMBERS_MOST], b[2 * NUMBERS_MOST];
+  dvi_elastic *solid = block(_i ? 3 : 2, 4, 2, DVI_ELASTIC_SVK);
+  dvi__solid_request request = {.fraction = 0.6, .threads = 1};
+  run_request(solid, &request, 1.2345, a);
+  request.is_queued = 1;
+  run_request(solid, &request, 1.2345, b);
+  ck_assert_mem_eq(a, b, sizeof a);
+  dvi_elastic_destroy(&solid);
+}
+END_TEST
+
+/* ---- energy ---- */
+
+/* Give the largest swing of the energy about its start. */
+static double swing(dvi_elastic_law law, const char *method, double fraction, double scale, double T)
+{
+  dvi_elastic *solid = block(3, 2, 2, law);
+  dvi_march *march = spun(solid, method, fraction, scale);
+  const double start = observed(march, "energy");
+  double worst = 0;
+  for (int k = 1; k <= 200; k++) {
+    advance(march, T * k / 200);
+    worst = fmax(worst, fabs(observed(march, "energy") / start - 1));
+  }
+  dvi_march_destroy(&march);
+  dvi_elastic_destroy(&solid);
+  return worst;
+}
+
+START_TEST(the_energy_of_classes_stays_for_a_long_time)
+{
+  const double found = swing(DVI_ELASTIC_SVK, "avi", 0.5, 1, is_short_run() ? 50 : 400);
+  if (getenv("SHOW")) printf("swing %g\n", found);
+  ck_assert_double_lt(found, 5e-3);
+}
+END_TEST
+
+/* ---- damping, loads and conditions ---- */
+
+static int shake(double t, const double *X, double *u, double *rate, void *user)
+{
+  (void)user;
+  u[0] = 0.05 * sin(3 * t) * (1 + X[1]), rate[0] = 0.15 * cos(3 * t) * (1 + X[1]);
+  u[1] = u[2] = rate[1] = rate[2] = 0;
+  return 0;
+}
+
+static int weight(double t, const double *X, const double *normal, double *force, void *user)
+{
+  (void)normal, (void)user;
+  force[0] = 0.1 * cos(2 * t), force[1] = 0.05 * X[0], force[2] = -0.2;
+  return 0;
+}
+
+static dvi_elastic *driven_block(double alpha, double beta)
+{
+  static const dvi_elastic_condition condition = {.part = "x=0", .displacement = shake};
+  static const dvi_elastic_load load = {.part = "all", .force = weight};
+  const dvi_generator_options options = {.cells = {2, 2, 2}, .grading = {2}};
+  dvi_elastic_material material = unit_material(DVI_ELASTIC_SVK);
+  material.alpha = alpha;
+  material.beta = beta;
+  return solid_on(generated("kuhn", options), material,
+                  (dvi_elastic_terms){
+                      .condition = &condition, .conditions = 1, .load = &load, .loads = 1});
+}
+
+/* Each of driven nodes, loads that depend on time, alpha and beta. */
+START_TEST(loads_conditions_and_damping_have_order_2)
+{
+  dvi_elastic *solid = driven_block(_i / 3 % 2 ? 0.7 : 0, _i / 6 ? 0.05 : 0);
+  const double fraction[] = {0.8, 0.4, 0.2, 0.1, 0.0125};
+  double u[5][2][81], error[4] = {0}, slope[2];
+  for (int k = 0; k < 5; k++) {
+    dvi_march *march = march_of(solid, methods[_i % 3], fraction[k]);
+    begin(march, NULL, NULL);
+    advance(march, 1);
+    sample(march, DVI_FORM_A, u[k][0]);
+    sample(march, DVI_FORM_E, u[k][1]);
+    dvi_march_destroy(&march);
+  }
+  for (int form = 0; form < 2; form++) {
+    for (int k = 0; k < 4; k++) {
+      error[k] = 0;
+      for (int i = 0; i < 81; i++) error[k] = fmax(error[k], fabs(u[k][form][i] - u[4][form][i]));
+    }
+    slope[form] = log2(error[0] / error[3]) / 3;
+    if (getenv("SHOW")) printf("%s case %d form %d: %g %g %g %g slope %g\n", methods[_i % 3], _i / 3, form, error[0], error[1], error[2], error[3], slope[form]);
+  }
+  ck_assert_double_gt(slope[0], 1.8);
+  ck_assert_double_gt(slope[1], 1.8);
+  dvi_elastic_destroy(&solid);
+}
+END_TEST
+
+SUITE(elastic_avi)
+{
+  tcase_add_loop_test(tests, the_free_block_has_its_digits_with_order_2, 0, 2 * METHODS);
+  tcase_add_loop_test(tests, momenta_are_conserved_to_roundings, 0, METHODS);
+  tcase_add_loop_test(tests, cuts_and_observations_change_no_bit, 0, METHODS);
+  tcase_add_loop_test(tests, a_saved_march_goes_on_with_the_same_bits, 0, METHODS);
+  tcase_add_loop_test(tests, classes_have_the_bits_of_the_calendar, 0, 2);
+  tcase_add_test(tests, the_energy_of_classes_stays_for_a_long_time);
+  tcase_add_loop_test(tests, loads_conditions_and_damping_have_order_2, 0, 12);
+}
