@@ -193,7 +193,7 @@ static bool write_panel(FILE *script, const canvas *bare, const vtu_field *field
     (void)fprintf(script, "%s$negative notitle with lines lw 1.2 lc rgb '#D55E00'", next(&joint));
   if (strokes > 0)
     (void)fprintf(script,
-                  "%s$strokes notitle with vectors head filled size screen 0.006,20 lw 1 "
+                  "%s$strokes notitle with vectors head nofilled size screen 0.008,20 lw 1 "
                   "lc rgb '#0072B2'",
                   next(&joint));
   (void)fputs("\n", script);
