@@ -13,7 +13,7 @@
 
 typedef struct plot_request {
   words axes, fields;
-  const char *out, *title, *view;
+  const char *out, *title, *view, *strokes;
   bool dots, equal, logarithmic, edges, duals;
 } plot_request;
 
@@ -69,8 +69,9 @@ static bool plot_draw(const plot_request *request, const curve_list *list, const
 static int plot_columns(const plot_request *request, const char *path)
 {
   curve_list list;
-  if (request->fields.count > 0 || request->edges || request->duals || request->view != NULL)
-    return usage_error("plot: --field, --edges, --duals and --view are for .vtu files");
+  if (request->fields.count > 0 || request->edges || request->duals || request->view != NULL ||
+      request->strokes != NULL)
+    return usage_error("plot: --field, --edges, --duals, --strokes and --view are for .vtu files");
   int code = curves_ask(&request->axes, &list);
   if (code != DONE) return code;
   code = curves_read(path, &list);
@@ -106,7 +107,7 @@ static const char *field_name(int k, const void *list)
   return k < g->fields ? g->field[k].name : NULL;
 }
 
-/* Find the fields that are asked for, or take the first one. */
+/* Find the fields that are asked for, or take the first one if there is nothing else to draw. */
 static int choose_fields(const plot_request *request, const vtu_grid *g, const vtu_field **field,
                          int *fields)
 {
@@ -122,7 +123,7 @@ static int choose_fields(const plot_request *request, const vtu_grid *g, const v
                          suggestion(name, field_name, g, near, sizeof near));
     }
   }
-  if (*fields == 0 && g->fields > 0) field[(*fields)++] = &g->field[0];
+  if (*fields == 0 && g->fields > 0 && request->strokes == NULL) field[(*fields)++] = &g->field[0];
   return DONE;
 }
 
@@ -130,6 +131,7 @@ static int plot_grid(const plot_request *request, const char *path)
 {
   vtu_grid g;
   const vtu_field *field[WORDS_MAX];
+  stroke_field strokes;
   picture p = {.title = request->title, .field = field, .duals = request->duals};
   if (request->axes.count > 0 || request->dots || request->equal || request->logarithmic)
     return usage_error("plot: --axes, --dots, --equal and --log are for columns of CSV files");
@@ -137,9 +139,14 @@ static int plot_grid(const plot_request *request, const char *path)
   if (code != DONE) return code;
   code = choose_fields(request, &g, field, &p.fields);
   if (code == DONE) code = read_view(request, &g, &p.from);
-  p.edges = request->edges || p.fields == 0;
+  if (code == DONE && request->strokes != NULL) {
+    code = strokes_find(&g, request->strokes, &strokes);
+    p.strokes = &strokes;
+  }
+  p.edges = request->edges || (p.fields == 0 && p.strokes == NULL);
   if (code == DONE) {
-    if (p.title == NULL) p.title = p.fields > 0 ? field[0]->name : path;
+    if (p.title == NULL)
+      p.title = p.fields > 0 ? field[0]->name : request->strokes != NULL ? request->strokes : path;
     code = picture_draw(request->out, &g, &p);
   }
   vtu_clear(&g);
@@ -177,7 +184,8 @@ static const char *const details[] = {
     "  dvi modes drum.yaml --vtu modes.vtu\n"
     "  dvi plot modes.vtu --field mode_1 --field mode_2 --out modes.svg\n"
     "  dvi mesh disk --write disk.vtu\n"
-    "  dvi plot disk.vtu --duals --out disk.svg\n",
+    "  dvi plot disk.vtu --duals --out disk.svg\n"
+    "  dvi plot field.vtu --strokes direction --out field.svg\n",
     NULL,
 };
 
@@ -209,6 +217,10 @@ static const option command_options[] = {
     {.name = "duals",
      OPTION_AT(plot_request, duals),
      .help = "draw the dual edges of triangles and rectangles"},
+    {.name = "strokes",
+     OPTION_AT(plot_request, strokes),
+     .value = "NAME",
+     .help = "draw the vectors of a grid's cells as short strokes"},
     {.name = "view",
      OPTION_AT(plot_request, view),
      .value = "A,E",

@@ -112,6 +112,17 @@ static int64_t write_duals(FILE *script, const canvas *c, bool negative)
   return count;
 }
 
+static int64_t write_strokes(FILE *script, const canvas *c)
+{
+  const picture *p = c->p;
+  (void)fputs("$strokes << END\n", script);
+  const int64_t count = p->strokes != NULL
+                            ? strokes_write(script, c->g, p->strokes, &p->from, &c->s, &c->pixels)
+                            : 0;
+  (void)fputs("END\n", script);
+  return count;
+}
+
 /* ---- maps ---- */
 
 /* The pixels follow the command as bytes, because gnuplot warns of NaN in texts. */
@@ -166,7 +177,8 @@ static bool write_panel(FILE *script, const canvas *bare, const vtu_field *field
   gnuplot_setting(script, "title", title);
   write_colours(script, c, field);
   write_edges(script, c);
-  const int64_t duals = write_duals(script, c, false), negative = write_duals(script, c, true);
+  const int64_t duals = write_duals(script, c, false), negative = write_duals(script, c, true),
+                strokes = write_strokes(script, c);
   const char *joint = "plot ";
   if (filled)
     (void)fprintf(script,
@@ -179,6 +191,11 @@ static bool write_panel(FILE *script, const canvas *bare, const vtu_field *field
     (void)fprintf(script, "%s$duals notitle with lines lw 0.6 lc rgb '#0072B2'", next(&joint));
   if (negative > 0)
     (void)fprintf(script, "%s$negative notitle with lines lw 1.2 lc rgb '#D55E00'", next(&joint));
+  if (strokes > 0)
+    (void)fprintf(script,
+                  "%s$strokes notitle with vectors head nofilled size screen 0.008,20 lw 1 "
+                  "lc rgb '#0072B2'",
+                  next(&joint));
   (void)fputs("\n", script);
   if (filled) write_map(script, r);
   raster_clear(&painted.pixels);
@@ -265,6 +282,8 @@ static int check(const vtu_grid *g, const picture *p, const skin *s)
     return usage_error("plot: --duals is for triangles and rectangles");
   if (!(s->most[0] > s->least[0]) || !(s->most[1] > s->least[1]))
     return usage_error("plot: from this side nothing is seen of the grid; take another --view");
+  if (p->strokes != NULL && s->faces > LINES_MOST)
+    return usage_error("plot: %lld strokes, %d can be drawn", (long long)s->faces, LINES_MOST);
   if ((p->edges || p->duals) && s->edges > LINES_MOST)
     return usage_error("plot: %lld edges, %d can be drawn; name a --field, without --edges",
                        (long long)s->edges, LINES_MOST);

@@ -1,8 +1,7 @@
-/** Pictures of grids: filled maps of fields, edges of cells, and circumcentric dual edges. */
+/** Pictures of grids: filled maps of fields, edges of cells, circumcentric dual edges, vectors. */
 #ifndef PICTURE_H
 #define PICTURE_H
-#include "picture/vtu.h"
-#include "picture/skin.h"
+#include "picture/strokes.h"
 
 /** What to draw of a grid. */
 typedef struct picture {
@@ -11,6 +10,7 @@ typedef struct picture {
   const vtu_field *const *field; /**< [fields] */
   bool edges;                    /**< draw the edges of the cells */
   bool duals;                    /**< draw the dual edges of triangles and rectangles */
+  const stroke_field *strokes;   /**< vectors to draw, or NULL */
   viewpoint from;
 } picture;
 

@@ -156,6 +156,14 @@ static bool turn_points(const vtu_grid *g, const viewpoint *from, skin *s)
   return true;
 }
 
+void skin_turn(const viewpoint *from, const double *vector, double *turned)
+{
+  double axis[3][3];
+  find_axes(from, axis);
+  for (int l = 0; l < 3; l++)
+    turned[l] = axis[l][0] * vector[0] + axis[l][1] * vector[1] + axis[l][2] * vector[2];
+}
+
 bool skin_make(const vtu_grid *g, const viewpoint *from, skin *s)
 {
   memset(s, 0, sizeof *s);

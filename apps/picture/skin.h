@@ -31,5 +31,8 @@ bool skin_is_flat(const vtu_grid *g);
  * dimensions has. Lines have edges alone. Complains and returns false without memory. */
 bool skin_make(const vtu_grid *g, const viewpoint *from, skin *s);
 
+/** Turn a vector as the points are turned. */
+void skin_turn(const viewpoint *from, const double *vector, double *turned);
+
 void skin_clear(skin *s);
 #endif

@@ -3,7 +3,7 @@
  *
  *     R_ts = sum_k f_k(t) f_k(s)^T - n_t n_s^T
  *
- * (Froehlich 1982; Stern 2009, sec. 4.3.2). */
+ * (Froehlich 1992; Stern 2009, sec. 4.3.2). */
 #include <math.h>
 #include <string.h>
 
