@@ -40,8 +40,7 @@ dvi_status dvi__calendar_create(int64_t count, double longest, double rate,
     return DVI_OK;
   }
   dvi__calendar_destroy(calendar);
-  return dvi__fail(DVI_NO_MEMORY, "avi: no memory for a calendar of %lld events",
-                   (long long)count);
+  return dvi__fail(DVI_NO_MEMORY, "avi: no memory for a calendar of %lld events", (long long)count);
 }
 
 void dvi__calendar_clear(dvi__calendar *c, double origin)
@@ -100,7 +99,8 @@ static void sort(int64_t count, dvi__calendar_event *event)
   for (int64_t i = 1; i < count; i++) {
     const dvi__calendar_event own = event[i];
     int64_t place = i;
-    for (; place > 0 && is_before(&own, event + place - 1); place--) event[place] = event[place - 1];
+    for (; place > 0 && is_before(&own, event + place - 1); place--)
+      event[place] = event[place - 1];
     event[place] = own;
   }
 }

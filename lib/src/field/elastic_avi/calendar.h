@@ -16,13 +16,13 @@ typedef struct dvi__calendar_event {
 typedef struct dvi__calendar {
   int64_t count;
   double origin, days_per_time;
-  int is_open; /* the events of today are sorted */
-  int64_t today, days; /* days since the origin, and a power of 2 */
-  int64_t waiting;     /* events in lists */
-  int64_t first, end;  /* of the events of today that have not happened */
-  int64_t *head;       /* [days] lists of numbers, -1 at their end */
-  int64_t *link;       /* [numbers] */
-  double *time;        /* [numbers] of the events in lists */
+  int is_open;                /* the events of today are sorted */
+  int64_t today, days;        /* days since the origin, and a power of 2 */
+  int64_t waiting;            /* events in lists */
+  int64_t first, end;         /* of the events of today that have not happened */
+  int64_t *head;              /* [days] lists of numbers, -1 at their end */
+  int64_t *link;              /* [numbers] */
+  double *time;               /* [numbers] of the events in lists */
   dvi__calendar_event *event; /* [numbers] of today */
 } dvi__calendar;
 

@@ -61,7 +61,8 @@ static double length_to(const flight *f, const dvi_obstacle *o)
   const double a = dot(v, v), b = dot(d, v), c = dot(d, d) - o->radius * o->radius,
                square = b * b - a * c;
   if (!(a > 0) || !(square >= 0)) return INFINITY;
-  if (o->kind == DVI_OBSTACLE_BALL) return b < 0 ? fmax(c / (sqrt(square) - b), 0) : (double)INFINITY;
+  if (o->kind == DVI_OBSTACLE_BALL)
+    return b < 0 ? fmax(c / (sqrt(square) - b), 0) : (double)INFINITY;
   return fmax(b > 0 ? -c / (b + sqrt(square)) : (sqrt(square) - b) / a, 0);
 }
 

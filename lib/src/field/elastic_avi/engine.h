@@ -86,12 +86,12 @@ typedef struct dvi__solid_avi {
   double *decay; /* [vertices] rates, or empty */
   int *viscous;  /* [cells] place in `stretch`, or -1. NULL if there are none */
   int64_t viscous_count;
-  int64_t *cell_start;       /* [vertices+1] */
-  int *cell_of;              /* own numbers of the cells of a vertex, ascending */
-  int is_equal;              /* one step for all */
-  int is_free;               /* events are taken from a calendar */
-  int is_linear;             /* forces are those of small strains at rest */
-  int may_fail;              /* forces, loads or conditions */
+  int64_t *cell_start; /* [vertices+1] */
+  int *cell_of;        /* own numbers of the cells of a vertex, ascending */
+  int is_equal;        /* one step for all */
+  int is_free;         /* events are taken from a calendar */
+  int is_linear;       /* forces are those of small strains at rest */
+  int may_fail;        /* forces, loads or conditions */
   int classes;
   int64_t class_end[DVI__SOLID_CLASSES];
   double shortest, longest, bound, band;

@@ -139,8 +139,7 @@ static int act_guarded(dvi__solid_avi *avi, int64_t c, double t)
   }
   const int returned = dvi__solid_pull(avi, c, t, u, f, load);
   if (returned != 0) return returned;
-  if (avi->state.worked != NULL)
-    avi->state.worked[c] += size_of_work(avi, c, v, f, load);
+  if (avi->state.worked != NULL) avi->state.worked[c] += size_of_work(avi, c, v, f, load);
   if (avi->cell_kind[c] & DVI__CELL_VISCOUS) pay_damping(avi, c, u, v, f);
   for (int a = 0; a <= n; a++) {
     dvi__solid_node *node = avi->state.node + corner[a];

@@ -121,8 +121,7 @@ static dvi_status lay_out_state(dvi__solid_avi *avi)
       {(void **)&s->node, vertices * sizeof *s->node},
       {(void **)&s->count, avi->is_free ? cells * sizeof *s->count : 0},
       {(void **)&s->worked, is_worked ? cells * sizeof *s->worked : 0},
-      {(void **)&s->stretch,
-       (size_t)avi->viscous_count * DVI__SOLID_NUMBERS * sizeof *s->stretch},
+      {(void **)&s->stretch, (size_t)avi->viscous_count * DVI__SOLID_NUMBERS * sizeof *s->stretch},
       {(void **)&s->hits, meets ? vertices * sizeof *s->hits : 0}};
   avi->size = 0;
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) avi->size += parts[i].size;

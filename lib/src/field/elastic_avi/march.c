@@ -39,10 +39,8 @@ dvi_status dvi__solid_ask(const dvi_elastic *solid, const dvi_march_options *opt
   if (solid == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "march: a solid is needed");
   if (options == NULL) options = &defaults;
   DVI_TRY(dvi__plan_march(options, &plan));
-  *request = (dvi__solid_request){.step = plan.step,
-                                  .fraction = plan.fraction,
-                                  .span = plan.span,
-                                  .threads = plan.threads};
+  *request = (dvi__solid_request){
+      .step = plan.step, .fraction = plan.fraction, .span = plan.span, .threads = plan.threads};
   return find_method(&plan, options->method != NULL ? options->method : "avi", request);
 }
 
@@ -130,12 +128,12 @@ static const char *observable(const void *self, int i)
 static double momentum(const dvi__solid_avi *avi, int k)
 {
   const dvi_elastic *e = avi->solid;
-  const int n = avi->n, turn = k - n, i = n == 3 ? (turn + 1) % 3 : 0, j = n == 3 ? (turn + 2) % 3 : 1;
+  const int n = avi->n, turn = k - n, i = n == 3 ? (turn + 1) % 3 : 0,
+            j = n == 3 ? (turn + 2) % 3 : 1;
   double sum = 0;
   for (int64_t v = 0; v < avi->vertices; v++) {
     const double *u = avi->view->u + v * n, *X = e->point + v * n, *rate = avi->view->rate + v * n;
-    sum += e->mass[v] *
-           (turn < 0 ? rate[k] : (X[i] + u[i]) * rate[j] - (X[j] + u[j]) * rate[i]);
+    sum += e->mass[v] * (turn < 0 ? rate[k] : (X[i] + u[i]) * rate[j] - (X[j] + u[j]) * rate[i]);
   }
   return sum;
 }
@@ -145,8 +143,7 @@ static dvi_status observe(const void *self, int i, double *value)
   const dvi__solid_avi *avi = self;
   const int what = what_of(avi, i);
   *value = 0;
-  for (int64_t v = 0; v < avi->vertices && what == HITS; v++)
-    *value += (double)avi->state.hits[v];
+  for (int64_t v = 0; v < avi->vertices && what == HITS; v++) *value += (double)avi->state.hits[v];
   if (what == HITS) return DVI_OK;
   DVI_TRY(dvi__solid_avi_look(avi));
   const dvi_elastic_energies *e = &avi->view->energies;
@@ -178,11 +175,11 @@ static dvi_status load(void *self, const dvi__sections *sections)
 
 /* ---- create ---- */
 
-#define KIND(called)                                                                          \
-  {                                                                                           \
-    .name = called, .destroy = destroy, .start = start, .advance = advance, .time = time,     \
-    .size = size, .sample = sample, .observables = observables, .observable = observable,     \
-    .observe = observe, .facts = facts, .save = save, .load = load,                           \
+#define KIND(called)                                                                      \
+  {                                                                                       \
+    .name = called, .destroy = destroy, .start = start, .advance = advance, .time = time, \
+    .size = size, .sample = sample, .observables = observables, .observable = observable, \
+    .observe = observe, .facts = facts, .save = save, .load = load,                       \
   }
 
 static const dvi__march_kind kind_avi = KIND("avi"), kind_verlet = KIND("verlet");
@@ -192,8 +189,7 @@ dvi_status dvi_elastic_march_create(const dvi_elastic *elastic, const dvi_march_
 {
   dvi__solid_request request;
   dvi__solid_avi *avi;
-  if (march == NULL)
-    return dvi__fail(DVI_BAD_ARGUMENT, "march: a place for the march is needed");
+  if (march == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "march: a place for the march is needed");
   *march = NULL;
   DVI_TRY(dvi__solid_ask(elastic, options, &request));
   DVI_TRY(dvi__solid_avi_create(elastic, &request, &avi));

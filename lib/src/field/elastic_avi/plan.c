@@ -132,11 +132,12 @@ dvi_status dvi__solid_plan_make(const dvi_elastic *solid, const dvi__solid_reque
   *plan = (dvi__solid_plan){.bound = DVI_NEW(double, solid->cells),
                             .step = DVI_NEW(double, solid->cells),
                             .class = DVI_NEW(int, solid->cells)};
-  const dvi_status status = plan->bound && plan->step && plan->class
-                                ? choose(solid, request, plan)
-                                : dvi__fail(DVI_NO_MEMORY,
-                                            "avi: no memory for the steps of %lld cells",
-                                            (long long)solid->cells);
+  const dvi_status status =
+      plan->bound && plan->step && plan->class ? choose(solid, request, plan)
+                                               : dvi__fail(
+                                                     DVI_NO_MEMORY,
+                                                     "avi: no memory for the steps of %lld cells",
+                                                     (long long)solid->cells);
   if (status != DVI_OK) dvi__solid_plan_clear(plan);
   return status;
 }

@@ -28,8 +28,8 @@ static uint64_t hash_of(const dvi__solid_avi *avi)
   hash = dvi__hash(hash, cells * sizeof *avi->step, avi->step);
   for (int i = 0; i < e->material_count; i++) {
     const dvi__solid_material *m = e->materials + i;
-    const double law = (double)m->law, numbers[] = {law, m->lambda, m->mu, m->mooney,
-                                                    m->rho, m->alpha, m->beta};
+    const double law = (double)m->law,
+                 numbers[] = {law, m->lambda, m->mu, m->mooney, m->rho, m->alpha, m->beta};
     hash = dvi__hash(hash, sizeof numbers, numbers);
   }
   return hash;

@@ -27,10 +27,14 @@ static dvi_status check(const dvi__solid_avi *avi, double t, const double *u, co
   dvi__solid_view *view = avi->view;
   const size_t size = (size_t)(avi->vertices * avi->n) * sizeof(double);
   view->t = (double)NAN;
-  if (u != NULL) memcpy(view->u, u, size);
-  else memset(view->u, 0, size);
-  if (rate != NULL) memcpy(view->rate, rate, size);
-  else memset(view->rate, 0, size);
+  if (u != NULL)
+    memcpy(view->u, u, size);
+  else
+    memset(view->u, 0, size);
+  if (rate != NULL)
+    memcpy(view->rate, rate, size);
+  else
+    memset(view->rate, 0, size);
   for (int64_t v = 0; v < avi->vertices && !avi->is_linear; v++) {
     const int returned = dvi__solid_given(avi->solid, v, t, view->u + v * avi->n,
                                           view->rate + v * avi->n);
@@ -90,11 +94,11 @@ dvi_status dvi__solid_avi_start(dvi__solid_avi *avi, double t, const double *u, 
   DVI_TRY(check(avi, t, u, rate));
   dvi__solid_keep(avi);
   take_values(avi, t);
-  avi->clock = (dvi__solid_clock){
-      .t0 = t,
-      .t = t,
-      .start_energy = avi->view->energies.kinetic + avi->view->energies.stored,
-      .allowed = avi->band};
+  avi->clock = (dvi__solid_clock){.t0 = t,
+                                  .t = t,
+                                  .start_energy = avi->view->energies.kinetic +
+                                                  avi->view->energies.stored,
+                                  .allowed = avi->band};
   for (int64_t c = 0; c < avi->active; c++) {
     const int returned = kick_first(avi, c, t);
     if (returned == 0) continue;

@@ -50,10 +50,10 @@ static dvi_status see_debt(const dvi__solid_avi *avi, int64_t c, const double *u
     const double owed = dvi__decay_owed(avi->decay != NULL ? avi->decay[vertex] : 0, avi->step[c],
                                         since);
     for (int i = 0; i < n; i++)
-      debt[a * n + i] = avi->node_kind[vertex] & 1 << i ? 0
-                                                        : avi->state.node[vertex].inverse *
-                                                              (owed * f[a * n + i] +
-                                                               answer[a * n + i]);
+      debt[a * n + i] = avi->node_kind[vertex] & 1 << i
+                            ? 0
+                            : avi->state.node[vertex].inverse *
+                                  (owed * f[a * n + i] + answer[a * n + i]);
   }
   return DVI_OK;
 }
@@ -110,7 +110,8 @@ static dvi_status see_debts(const dvi__solid_avi *avi)
 static double reference_energy(const dvi__solid_avi *avi)
 {
   double sum = avi->clock.start_energy;
-  for (int64_t c = 0; c < avi->active && avi->state.worked != NULL; c++) sum += avi->state.worked[c];
+  for (int64_t c = 0; c < avi->active && avi->state.worked != NULL; c++)
+    sum += avi->state.worked[c];
   return sum;
 }
 
