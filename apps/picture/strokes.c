@@ -49,7 +49,7 @@ static double measure(const skin *s, const skin_face *face, double *middle)
   const double *corner[4];
   double u[3], v[3], normal[3];
   for (int i = 0; i < 4; i++)
-    corner[i] = s->point + 3 * face->vertex[i < face->corners ? i : face->corners - 1];
+    corner[i] = s->point + 3 * face->vertex[i < 3 || face->corners == 4 ? i : 2];
   for (int l = 0; l < 3; l++) {
     middle[l] = 0;
     for (int i = 0; i < face->corners; i++) middle[l] += corner[i][l] / face->corners;
