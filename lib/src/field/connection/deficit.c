@@ -38,7 +38,7 @@ static dvi_status subtract_angles(const dvi_mesh *mesh, const double *length, dv
   const int whole = (2 << mesh->n) - 1;
   for (int64_t c = 0; c < mesh->count[mesh->n]; c++) {
     int64_t number[DVI__CORNER_SETS];
-    dvi__twofold angle[DVI__PAIRS];
+    dvi__twofold angle[DVI__PAIRS] = {{0, 0}};
     DVI_TRY(find_angles(mesh, length, c, angle));
     dvi__number_faces(mesh, c, number);
     for (int i = 0; i <= mesh->n; i++)
