@@ -46,14 +46,15 @@ static double longest_of(const vtu_grid *g, const stroke_field *field)
 /* Set the middle of a face, and return the root of its area. */
 static double measure(const skin *s, const skin_face *face, double *middle)
 {
-  const double *corner[4] = {NULL};
+  const double *corner[4];
   double u[3], v[3], normal[3];
-  for (int i = 0; i < face->corners; i++) corner[i] = s->point + 3 * face->vertex[i];
+  for (int i = 0; i < 4; i++)
+    corner[i] = s->point + 3 * face->vertex[i < 3 || face->corners == 4 ? i : 2];
   for (int l = 0; l < 3; l++) {
     middle[l] = 0;
     for (int i = 0; i < face->corners; i++) middle[l] += corner[i][l] / face->corners;
     u[l] = corner[1][l] - corner[0][l];
-    v[l] = corner[face->corners - 1][l] - corner[0][l];
+    v[l] = corner[3][l] - corner[0][l];
   }
   for (int l = 0; l < 3; l++)
     normal[l] = u[(l + 1) % 3] * v[(l + 2) % 3] - u[(l + 2) % 3] * v[(l + 1) % 3];

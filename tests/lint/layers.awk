@@ -128,7 +128,7 @@ function check_library(quoted, header,   target) {
       breach("call KLU in num/ or reference/ only")
     return
   }
-  if (header !~ /^[a-z]+\/([a-z]+\/)*[a-z_0-9]+\.(h|def)$/) {
+  if (header !~ /^[a-z]+\/([a-z_]+\/)*[a-z_0-9]+\.(h|def)$/) {
     breach("write \"room/file.h\", relative to lib/src")
     return
   }

@@ -309,7 +309,6 @@ static void turn_rotations(const adjustment *a, dvi_connection *c)
 static dvi_status check_arguments(const dvi_connection *connection,
                                   const dvi_adjust_options *options)
 {
-  if (connection == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "curvature: a connection is needed");
   if (options->size != sizeof *options)
     return dvi__fail(DVI_BAD_ARGUMENT, "curvature: options of size %zu, %zu expected",
                      options->size, sizeof *options);
@@ -332,6 +331,7 @@ dvi_status dvi_connection_adjust(const dvi_connection *connection,
   if (adjusted == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "curvature: a place for the connection is needed");
   *adjusted = NULL;
+  if (connection == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "curvature: a connection is needed");
   if (options == NULL) options = &defaults;
   DVI_TRY(check_arguments(connection, options));
   adjustment a = {.c = connection,

@@ -15,10 +15,10 @@
 static dvi_status find_angles(const dvi_mesh *mesh, const double *length, int64_t cell,
                               dvi__twofold *angle)
 {
-  double of_cell[DVI__PAIRS];
-  dvi__measured_simplex measured;
   dvi__laid_cell laid;
   if (length != NULL) {
+    double of_cell[DVI__PAIRS];
+    dvi__measured_simplex measured;
     dvi__cell_lengths(mesh, length, cell, of_cell);
     if (!dvi__simplex_measure(mesh->n, of_cell, &measured))
       return dvi__refuse_lengths(mesh, length, cell);
@@ -38,7 +38,7 @@ static dvi_status subtract_angles(const dvi_mesh *mesh, const double *length, dv
   const int whole = (2 << mesh->n) - 1;
   for (int64_t c = 0; c < mesh->count[mesh->n]; c++) {
     int64_t number[DVI__CORNER_SETS];
-    dvi__twofold angle[DVI__PAIRS];
+    dvi__twofold angle[DVI__PAIRS] = {{0, 0}};
     DVI_TRY(find_angles(mesh, length, c, angle));
     dvi__number_faces(mesh, c, number);
     for (int i = 0; i <= mesh->n; i++)

@@ -124,7 +124,7 @@ static const char *observable(const void *self, int i)
   return (avi->n == 3 ? in_space : in_plane)[what - MOMENTA];
 }
 
-/* The component k of m u', or about the origin of x × m u' from k = n on. */
+/* The component k of m u', or about the origin of x x m u' from k = n on. */
 static double momentum(const dvi__solid_avi *avi, int k)
 {
   const dvi_elastic *e = avi->solid;

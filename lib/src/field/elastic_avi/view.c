@@ -3,10 +3,11 @@
  * Nodes fly on from their last event, and cells pay for what lies between t and the middle of the
  * interval that they have paid for,
  *
- *     u_a(t) = u_a + v_a (t - tau_a),   v_a(t) = v_a + sum over K of f_K(u(t)) (t - t_K - h_K/2)/m_a
+ *     u_a(t) = u_a + v_a (t - tau_a),
+ *     v_a(t) = v_a + sum over K of f_K(u(t)) (t - t_K - h_K/2)/m_a,
  *
- * which is of order 2 at any t. A damping beta has answered w of event.c, and owes what u(t) differs
- * from it; where alpha is not 0, what cells owe is that of field/step/decay.h. */
+ * which is of order 2 at any t. A damping beta has answered w of event.c, and owes what u(t)
+ * differs from it. Where alpha is not 0, what cells owe is that of field/step/decay.h. */
 #include <math.h>
 #include <string.h>
 

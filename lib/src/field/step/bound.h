@@ -16,7 +16,7 @@ typedef struct dvi__march_plan {
   const char *options; /* of the method, "key=value,...", or "" */
 } dvi__march_plan;
 
-/* Check the numbers of options, and set the plan to them. Its options of the method are left out. */
+/* Check the numbers of options, and set the plan to them. Options of the method are left out. */
 dvi_status dvi__plan_march(const dvi_march_options *options, dvi__march_plan *plan);
 
 /* Choose the step of all cells, and give the bound below which steps are stable. A step beyond it
