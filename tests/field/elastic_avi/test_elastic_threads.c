@@ -29,7 +29,7 @@ static int weight(double t, const double *X, const double *normal, double *force
   (void)normal, (void)user;
   force[0] = 0.1 * cos(2 * t);
   force[1] = 0.05 * X[0];
-  force[2] = -2;
+  force[2] = -1;
   return 0;
 }
 
