@@ -9,7 +9,7 @@
 #include "support/solid/quad_avi.h"
 #include "support/suite.h"
 
-enum { LAWS = 4, END = 1, CHECKS_LEAST = 8 };
+enum { LAWS = 4, END = 1, CHECKS_LEAST = 4 };
 
 typedef struct pair {
   judged_solid s;
@@ -72,10 +72,11 @@ static void check_time(pair *p, double t, double rounding, const char *name)
 }
 
 /* Steps of both are equal up to a rounding, and so are times. States are compared in the middle
- * between two times of events, up to t = 1; loads deform a solid too much later. Kicks at the start are no events of a march. */
+ * between two times of events, up to t = 1; loads deform a solid too much later. Kicks at the start
+ * are no events of a march. */
 static void check_events(const solid_case *of, const char *method)
 {
-  pair p = pair_of(of, method, 0.7);
+  pair p = pair_of(of, method, 0.4);
   dvi_march_facts facts;
   quad_avi_event(&p.judge);
   const long kicks = p.judge.events;
@@ -97,7 +98,7 @@ static void check_events(const solid_case *of, const char *method)
 static solid_case case_of(int i, unsigned traits)
 {
   return (solid_case){.n = 2 + i / LAWS,
-                      .cells = i < LAWS ? 2 : 1,
+                      .cells = i < LAWS || i == LAWS + DVI_ELASTIC_NEO_HOOKEAN ? 2 : 1,
                       .grading = 2,
                       .jitter = 0.2,
                       .law = (dvi_elastic_law)(i % LAWS),

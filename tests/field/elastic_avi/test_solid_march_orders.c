@@ -1,6 +1,7 @@
 /* labels: order */
-/* Orders of marches of solids, judged in quadruple precision, at fractions 0.8
- * to 0.05. With DVI_SHOW_ORDERS in the environment the errors are printed. */
+/* Orders of marches of solids, judged in quadruple precision, over five fractions from 0.8 on, with
+ * loads from 0.6 and with damping from 0.4 on, where the fastest vibrations are resolved. With
+ * DVI_SHOW_ORDERS in the environment they are printed. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,18 +11,18 @@
 #include "support/solid/judged_solids.h"
 #include "support/suite.h"
 
-enum { LAWS = 4, LEVELS = 5, TIMES = 4 };
+enum { LAWS = 4, LEVELS = 5, TIMES = 8 };
 
 typedef struct goal {
   judged_solid s;
   double *u, *rate;                /* [size] the start, the rate as E */
-  quad *end[TIMES], *speed[TIMES]; /* [size] at the times (4 + i)/8 */
+  quad *end[TIMES], *speed[TIMES]; /* [size] at the times */
   const char *name;
 } goal;
 
 static double time_of(int i)
 {
-  return (4 + i) / 8.0;
+  return (TIMES + i) / (2.0 * TIMES);
 }
 
 static quad *copy_of(int size, const quad *x)
@@ -55,7 +56,8 @@ static void end_goal(goal *g)
   end_judged_solid(&g->s);
 }
 
-/* Set error[0] to that of u, and error[1] to that of u', root mean squares over the times. */
+/* Set error[0] to that of u, and error[1] to that of u', root mean squares over the times. At a
+ * single one an error depends on where the times of events happen to be. */
 static void find_errors(const goal *g, const char *method, double fraction, double *error)
 {
   const int size = g->s.judge.size;
@@ -136,7 +138,7 @@ END_TEST
 
 START_TEST(damped_solids)
 {
-  check_case(_i, SOLID_OF_TWO | SOLID_MOVED | SOLID_LOADED | SOLID_DAMPED, 0.6);
+  check_case(_i, SOLID_OF_TWO | SOLID_MOVED | SOLID_LOADED | SOLID_DAMPED, 0.4);
 }
 END_TEST
 
