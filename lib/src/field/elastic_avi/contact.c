@@ -6,18 +6,21 @@
  *
  *     w = v + d,    d = sum over the cells K of the node of  f_K (t - t_K - h_K/2)/m,
  *
- * with the forces f_K of the last events t_K, which pay for t_K - h_K/2 < t < t_K + h_K/2. These
- * forces differ from those at t by O(h), so that w is right to order 2. Its part along the outer
- * normal N changes from w_N to -e w_N, and friction takes at most mu (1 + e) |w_N| along the surface
+ * since the last kicks, at t_K, pay for t_K - h_K/2 < t < t_K + h_K/2. The forces f_K are those at t.
+ * With the ones at t_K, which differ by O(h), w would still be right to order 2, but its error has a
+ * mean, which gives energy to all hits. Nodes of a cell are taken to fly on from its last event, so
+ * that a hit needs nothing that other cells change. The part of w along the outer normal N changes from w_N to -e w_N, and friction takes at most mu (1 + e) |w_N| along the surface
  * (Fetecau, Marsden, Ortiz and West 2003, with Coulomb's friction). The node flies on with w - d.
  * Components that are given stay as they are: N is replaced by its free part.
  *
  * With S = sum f_K/m, the surface presses with p = -S.N on a node that lies on it, and with
  * |v|^2/R more inside of a ball and less outside. A node rests if p >= 0 and it would rise for less
  * than half of its shortest step, or if its flight would not rise at all. Then it stays on the
- * surface until p < 0, and friction slows it down by mu p or holds it. So nothing sinks, trembles or
+ * surface until p < 0, and friction slows it down by mu p or holds it. Here the
+ * forces are those of the last events. So nothing sinks, trembles or
  * gains energy. A rest takes at most the energy of such a hop, O(h^2). */
 #include <math.h>
+#include <string.h>
 
 #include "field/elastic/contacts.h"
 #include "field/elastic_avi/engine.h"
@@ -106,8 +109,27 @@ static const dvi_obstacle *find_first(const flight *f, const dvi_obstacle *but, 
 
 /* ---- what cells do ---- */
 
+/* Give the forces of a cell now, when the node is at u. Those of the last event stand in where they
+ * cannot be computed. */
+static void pull_now(const flight *f, int64_t c, int corner, double now, double *force)
+{
+  const dvi__solid_avi *avi = f->avi;
+  const int n = avi->n, numbers = (n + 1) * n;
+  const dvi__solid_push *push = avi->state.push + avi->meeting[c];
+  double u[DVI__SOLID_NUMBERS], load[DVI__SOLID_NUMBERS];
+  for (int k = 0; k < numbers; k++) u[k] = push->u[k] + push->v[k] * (now - push->t);
+  for (int i = 0; i < n; i++) u[corner * n + i] = f->node->u[i];
+  if (dvi__solid_pull(avi, c, now, u, force, load) != 0) {
+    memcpy(force, push->f, (size_t)numbers * sizeof *force);
+    return;
+  }
+  if (!(avi->cell_kind[c] & DVI__CELL_VISCOUS)) return;
+  dvi__solid_resist(avi, c, push->v, load);
+  for (int k = 0; k < numbers; k++) force[k] += load[k];
+}
+
 /* Set d and S, divided by what the velocity has decayed to. */
-static void gather_pushes(const flight *f, meeting *at)
+static void gather_pushes(const flight *f, int is_hit, meeting *at)
 {
   const dvi__solid_avi *avi = f->avi;
   const int n = avi->n;
@@ -118,11 +140,14 @@ static void gather_pushes(const flight *f, meeting *at)
     const int c = avi->cell_of[k], *corner = avi->corner + (int64_t)c * (n + 1);
     const dvi__solid_push *push = avi->state.push + avi->meeting[c];
     const double owed = dvi__decay_owed(f->decay, avi->step[c], now - push->t);
+    double fresh[DVI__SOLID_NUMBERS];
     int a = 0;
     while (corner[a] != f->vertex) a++;
+    const double *force = push->f;
+    if (is_hit) pull_now(f, c, a, now, fresh), force = fresh;
     at->shortest = fmin(at->shortest, avi->step[c]);
     for (int i = 0; i < n; i++) {
-      const double rate = f->given & 1 << i ? 0 : f->node->inverse / left * push->f[a * n + i];
+      const double rate = f->given & 1 << i ? 0 : f->node->inverse / left * force[a * n + i];
       at->debt[i] += owed * rate;
       at->pull[i] += rate;
     }
@@ -149,10 +174,10 @@ static int find_normal(const flight *f, const dvi_obstacle *o, meeting *at)
   return at->square > 1e-12;
 }
 
-static int meet(const flight *f, const dvi_obstacle *o, meeting *at)
+static int meet(const flight *f, const dvi_obstacle *o, int is_hit, meeting *at)
 {
   if (!find_normal(f, o, at)) return 0;
-  gather_pushes(f, at);
+  gather_pushes(f, is_hit, at);
   find_pressure(f, o, at);
   return 1;
 }
@@ -214,7 +239,7 @@ static void land(const flight *f, const dvi_obstacle *o)
 {
   meeting at;
   double *v = f->node->v;
-  if (!meet(f, o, &at)) return;
+  if (!meet(f, o, 1, &at)) return;
   add(v, 1, at.debt);
   const double towards = -dot(v, at.normal),
                hop = 0.5 * fmax(at.pressure, 0) * at.square * at.shortest;
@@ -289,7 +314,7 @@ static int stay(const flight *f, const dvi_obstacle *o, meeting *at)
 {
   double *v = f->node->v, along[DVI__SOLID_AXES];
   const int is_stuck = f->touch->is_stuck;
-  if (!meet(f, o, at) || !(at->pressure >= 0)) {
+  if (!meet(f, o, 0, at) || !(at->pressure >= 0)) {
     f->touch->rests = f->touch->is_stuck = 0;
     if (at->square > 0) set_normal_rate(at, fmax(-dot(at->debt, at->normal), 0), v);
     return 0;
@@ -315,6 +340,19 @@ static const dvi_obstacle *go_on(flight *f, const dvi_obstacle *o, const meeting
   else
     slide(f, o, length, 0, nowhere);
   return other;
+}
+
+void dvi__solid_note(dvi__solid_avi *avi, int64_t c, double t, const double *u, const double *f)
+{
+  const int n = avi->n, *corner = avi->corner + c * (n + 1);
+  if (!(avi->cell_kind[c] & DVI__CELL_MEETS)) return;
+  dvi__solid_push *push = avi->state.push + avi->meeting[c];
+  push->t = t;
+  for (int k = 0; k < (n + 1) * n; k++) {
+    push->u[k] = u[k];
+    push->v[k] = avi->state.node[corner[k / n]].v[k % n];
+    push->f[k] = f[k];
+  }
 }
 
 /* The obstacle on which the node rests, or NULL. */

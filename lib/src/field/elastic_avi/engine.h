@@ -57,9 +57,9 @@ typedef struct dvi__solid_touch {
   int32_t is_stuck; /* friction holds it there */
 } dvi__solid_touch;
 
-/* The last event of a cell, with its forces [(n+1)*n]. */
+/* The last event of a cell: its displacements, velocities after it, and forces [(n+1)*n]. */
 typedef struct dvi__solid_push {
-  double t, f[DVI__SOLID_NUMBERS];
+  double t, u[DVI__SOLID_NUMBERS], v[DVI__SOLID_NUMBERS], f[DVI__SOLID_NUMBERS];
 } dvi__solid_push;
 
 /* The clock of a run. */
@@ -145,14 +145,8 @@ void dvi__solid_bounce(const dvi__solid_avi *avi, int vertex, double t, double l
 void dvi__solid_rest(const dvi__solid_avi *avi, int vertex, const dvi__solid_node *node,
                      const dvi__solid_touch *touch, double *rate);
 
-/* Keep the forces f [(n+1)*n] of an event for the hits of the cell's nodes. */
-static inline void dvi__solid_note(dvi__solid_avi *avi, int64_t c, double t, const double *f)
-{
-  if (!(avi->cell_kind[c] & DVI__CELL_MEETS)) return;
-  dvi__solid_push *push = avi->state.push + avi->meeting[c];
-  push->t = t;
-  for (int k = 0; k < (avi->n + 1) * avi->n; k++) push->f[k] = f[k];
-}
+/* Keep an event of a cell at displacements u [(n+1)*n], with forces f, for the hits of its nodes. */
+void dvi__solid_note(dvi__solid_avi *avi, int64_t c, double t, const double *u, const double *f);
 
 /* The touch of a node, or NULL without obstacles. */
 static inline dvi__solid_touch *dvi__solid_touch_of(const dvi__solid_avi *avi, int64_t vertex)

@@ -141,13 +141,13 @@ static int act_guarded(dvi__solid_avi *avi, int64_t c, double t)
   if (returned != 0) return returned;
   if (avi->state.worked != NULL) avi->state.worked[c] += size_of_work(avi, c, v, f, load);
   if (avi->cell_kind[c] & DVI__CELL_VISCOUS) pay_damping(avi, c, u, v, f);
-  dvi__solid_note(avi, c, t, f);
   for (int a = 0; a <= n; a++) {
     dvi__solid_node *node = avi->state.node + corner[a];
     const double kick = avi->step[c] * node->inverse;
     for (int i = 0; i < n; i++)
       if (!(avi->node_kind[corner[a]] & 1 << i)) node->v[i] += kick * f[a * n + i];
   }
+  dvi__solid_note(avi, c, t, u, f);
   return 0;
 }
 

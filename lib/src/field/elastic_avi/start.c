@@ -105,8 +105,6 @@ static int kick_first(dvi__solid_avi *avi, int64_t c, double t)
     }
     dvi__solid_resist(avi, c, w, answer);
   }
-  for (int k = 0; k < (n + 1) * n; k++) load[k] = f[k] + 2 * answer[k] / avi->step[c];
-  dvi__solid_note(avi, c, t, load);
   for (int a = 0; a <= n; a++) {
     dvi__solid_node *node = avi->state.node + corner[a];
     const double part = -dvi__decay_owed(avi->decay != NULL ? avi->decay[corner[a]] : 0,
@@ -115,6 +113,8 @@ static int kick_first(dvi__solid_avi *avi, int64_t c, double t)
       if (!(avi->node_kind[corner[a]] & 1 << i))
         node->v[i] += node->inverse * (part * f[a * n + i] + answer[a * n + i]);
   }
+  for (int k = 0; k < (n + 1) * n; k++) f[k] += 2 * answer[k] / avi->step[c];
+  dvi__solid_note(avi, c, t, u, f);
   return 0;
 }
 
