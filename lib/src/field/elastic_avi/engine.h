@@ -85,7 +85,7 @@ typedef struct dvi__solid_view {
   double t;         /* NaN if nothing is valid */
   double *u, *rate; /* [vertices*n] */
   dvi_elastic_energies energies;
-  double growth;
+  double growth, hits;
 } dvi__solid_view;
 
 typedef struct dvi__solid_avi {
@@ -135,6 +135,17 @@ static inline int dvi__solid_fly(const dvi__solid_avi *avi, int vertex, double t
   for (int i = 0; i < DVI__SOLID_AXES; i++) node->u[i] += node->v[i] * span;
   node->tau = t;
   return 0;
+}
+
+/* The kinetic energy of what is given at a driven node, 0 at others. */
+static inline double dvi__solid_driven_energy(const dvi__solid_avi *avi, int64_t vertex,
+                                              const dvi__solid_node *node)
+{
+  const int kind = avi->node_kind[vertex];
+  double square = 0;
+  for (int i = 0; i < avi->n && (kind & DVI__NODE_DRIVEN); i++)
+    if (kind & 1 << i) square += node->v[i] * node->v[i];
+  return 0.5 * square / node->inverse;
 }
 
 /* Fly among obstacles from the time t for the length s, in units of v. */

@@ -129,9 +129,12 @@ static int act_guarded(dvi__solid_avi *avi, int64_t c, double t)
       load[DVI__SOLID_NUMBERS];
   for (int a = 0; a <= n; a++) {
     dvi__solid_node *node = avi->state.node + corner[a];
+    const double before = dvi__solid_driven_energy(avi, corner[a], node);
     const int returned = dvi__solid_fly(avi, corner[a], t, node,
                                         dvi__solid_touch_of(avi, corner[a]));
     if (returned != 0) return returned;
+    if (avi->state.worked != NULL)
+      avi->state.worked[c] += fabs(dvi__solid_driven_energy(avi, corner[a], node) - before);
     for (int i = 0; i < n; i++) {
       u[a * n + i] = node->u[i];
       v[a * n + i] = node->v[i];

@@ -95,9 +95,12 @@ static dvi_status see_rate(const dvi__solid_avi *avi, int vertex, double *rate)
 
 static dvi_status see_nodes(const dvi__solid_avi *avi)
 {
+  avi->view->hits = 0;
   for (int64_t v = 0; v < avi->vertices; v++) {
     dvi__solid_node node;
-    DVI_TRY(see_node(avi, (int)v, &node));
+    dvi__solid_touch touch;
+    DVI_TRY(see_touch(avi, (int)v, &node, &touch));
+    avi->view->hits += (double)touch.hits;
     for (int i = 0; i < avi->n; i++) {
       avi->view->u[v * avi->n + i] = node.u[i];
       avi->view->rate[v * avi->n + i] = node.v[i];
@@ -131,11 +134,19 @@ static dvi_status see_rests(const dvi__solid_avi *avi)
   return DVI_OK;
 }
 
+/* The energy of the start, and the sizes of all that loads and driven nodes worked. */
 static double reference_energy(const dvi__solid_avi *avi)
 {
+  const int n = avi->n;
   double sum = avi->clock.start_energy;
   for (int64_t c = 0; c < avi->active && avi->state.worked != NULL; c++)
     sum += avi->state.worked[c];
+  for (int64_t v = 0; v < avi->vertices && avi->solid->is_driven; v++) {
+    dvi__solid_node now = avi->state.node[v];
+    const double before = dvi__solid_driven_energy(avi, v, &now);
+    for (int i = 0; i < n; i++) now.v[i] = avi->view->rate[v * n + i];
+    sum += fabs(dvi__solid_driven_energy(avi, v, &now) - before);
+  }
   return sum;
 }
 
