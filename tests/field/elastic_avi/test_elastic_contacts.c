@@ -242,7 +242,7 @@ START_TEST(elastic_hits_keep_the_energy_to_order_2)
 }
 END_TEST
 
-/* The nodes of the floor reach it together, at t = 1/2. */
+/* The nodes of the floor reach it together, at t = 1/2. Those that rest then are pressed on. */
 START_TEST(a_flat_hit_has_the_impulse_of_its_restitution)
 {
   double force[] = {0, 0}, floor_mass = 0;
@@ -256,7 +256,8 @@ START_TEST(a_flat_hit_has_the_impulse_of_its_restitution)
   ck_assert_double_eq(observed(march, "hits"), 0);
   advance(march, 0.5001);
   ck_assert_double_eq(observed(march, "hits"), 3);
-  ck_assert_double_eq_tol(observed(march, "momentum_y"), -0.5 + (1 + e) * 0.5 * floor_mass, 1e-14);
+  ck_assert_double_eq_tol(observed(march, "momentum_y"), -0.5 + (1 + e) * 0.5 * floor_mass,
+                          e > 0 ? 1e-14 : 2e-5);
   ck_assert_double_eq_tol(observed(march, "momentum_x"), 0.25, 1e-14);
   dvi_march_destroy(&march);
   dvi_elastic_destroy(&solid);
