@@ -151,6 +151,7 @@ static double observe(const dvi_march *march, const char *name)
 static int tell_laws(const char *method, int count, const dvi_law *law)
 {
   int code = DONE;
+  if (count == 0) return code;
   (void)printf("laws of %s over %d steps from a start at random:", method, (int)STEPS);
   for (int i = 0; i < count; i++)
     (void)printf("%s %s %.1e%s", i > 0 ? "," : "", law[i].name, law[i].error,

@@ -178,9 +178,9 @@ static int write_field(study *s, const dvi_connection *adjusted)
 {
   const int64_t cells = dvi_mesh_count(s->mesh, 2);
   const int space = dvi_mesh_space(s->mesh);
-  double *direction = calloc((size_t)(cells * (2 + space)) + 1, sizeof *direction),
-         *vector = direction + 2 * cells;
+  double *direction = calloc((size_t)(cells * (2 + space)) + 1, sizeof *direction);
   if (direction == NULL) return library_error(DVI_NO_MEMORY);
+  double *vector = direction + 2 * cells;
   dvi_status status = dvi_connection_directions(adjusted, 0, s->request->angle * pi / 180,
                                                 (int)s->request->symmetry, direction, &s->mismatch);
   if (status == DVI_OK) status = dvi_connection_vectors(adjusted, direction, vector);

@@ -164,9 +164,10 @@ int elastic_views_of_state(const problem *scene, double t, const double *q, cons
   const double *mass = dvi_elastic_masses(solid);
   int64_t unknowns;
   const int *unknown = dvi_elastic_unknowns(solid, &unknowns);
-  double *u = calloc(3 * numbers, sizeof *u), *rate = u + numbers, *v = rate + numbers;
+  double *u = calloc(3 * numbers, sizeof *u);
   *views = (elastic_views){.count = 0};
   if (u == NULL) return out_of_memory();
+  double *rate = u + numbers, *v = rate + numbers;
   for (size_t i = 0; i < numbers; i++)
     if (unknown[i] >= 0) v[unknown[i]] = p[unknown[i]] / mass[i / (size_t)n];
   const dvi_status status = dvi_elastic_lift(solid, t, q, v, u, rate);

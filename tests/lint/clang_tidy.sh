@@ -72,8 +72,10 @@ else
   passed=tests/lint/analyzed
 fi
 
-checks=$({ "$tool" --version | grep -o "version [0-9.]*"; cat .clang-tidy tests/lint/analyzer*.h "$0"; } |
-  cksum)
+checks=$({
+  "$tool" --version | grep -o 'version [0-9.]*'
+  cat .clang-tidy tests/lint/analyzer*.h "$0"
+} | cksum)
 while read -r parts; do
   # The list is meant to be split into words.
   # shellcheck disable=SC2086

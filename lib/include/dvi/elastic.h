@@ -241,7 +241,9 @@ dvi_status dvi_elastic_stability(const dvi_elastic *elastic, const dvi_march_opt
                                  double span, dvi_stability *report);
 
 /** Measure the laws of a solid without conditions, loads, obstacles and damping on a march that
- *  begins at random: "momentum", "angular" and "energy". Others have the energy alone.
+ *  begins at random: "momentum", "angular" and "energy". "angular" is left out if a law has no
+ *  turns. Others have the energy alone, if conditions hold at 0, loads are steady, and there are
+ *  neither dampings nor obstacles, or nothing.
  *
  *  @param[out] law    [DVI_LAWS_MAX]
  *  @param[out] count  number of laws

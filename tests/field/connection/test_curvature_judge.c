@@ -18,33 +18,28 @@ typedef struct judged {
   int8_t *is_outer;
 } judged;
 
-static dvi_mesh *generated(const char *name) {
+static dvi_mesh *generated(const char *name)
+{
   dvi_mesh *mesh = NULL;
-  ck_assert_msg(dvi_mesh_generate(name, NULL, &mesh) == DVI_OK, "%s",
-                dvi_last_error());
+  ck_assert_msg(dvi_mesh_generate(name, NULL, &mesh) == DVI_OK, "%s", dvi_last_error());
   return mesh;
 }
 
-static dvi_mesh *mesh_of_case(int i) {
+static dvi_mesh *mesh_of_case(int i)
+{
   switch (i) {
-  case 0:
-    return jittered_mesh(2, 2, 4, 0.25, 5);
-  case 1:
-    return jittered_mesh(3, 3, 3, 0.25, 6);
-  case 2:
-    return jittered_mesh(4, 4, 2, 0.1, 7);
-  case 3:
-    return generated("icosphere");
-  case 4:
-    return generated("cell-16");
-  case 5:
-    return generated("cell-600");
-  default:
-    return generated("cross-5");
+  case 0: return jittered_mesh(2, 2, 4, 0.25, 5);
+  case 1: return jittered_mesh(3, 3, 3, 0.25, 6);
+  case 2: return jittered_mesh(4, 4, 2, 0.1, 7);
+  case 3: return generated("icosphere");
+  case 4: return generated("cell-16");
+  case 5: return generated("cell-600");
+  default: return generated("cross-5");
   }
 }
 
-static double distance_of(const dvi_mesh *mesh, int a, int b) {
+static double distance_of(const dvi_mesh *mesh, int a, int b)
+{
   const int space = dvi_mesh_space(mesh);
   const double *point = dvi_mesh_points(mesh);
   double sum = 0;
@@ -56,11 +51,11 @@ static double distance_of(const dvi_mesh *mesh, int a, int b) {
 }
 
 /* Kuhn's simplices allow changes of a hundredth. */
-static judged judged_of(int i) {
+static judged judged_of(int i)
+{
   judged c = {.mesh = mesh_of_case(i)};
   unsigned long long seed = (unsigned)i + 17;
-  const int n = dvi_mesh_dimension(c.mesh),
-            *end = dvi_mesh_vertices(c.mesh, 1, NULL);
+  const int n = dvi_mesh_dimension(c.mesh), *end = dvi_mesh_vertices(c.mesh, 1, NULL);
   c.edges = dvi_mesh_count(c.mesh, 1);
   c.hinges = dvi_mesh_count(c.mesh, n - 2);
   c.length = calloc((size_t)c.edges, sizeof *c.length);
@@ -76,22 +71,22 @@ static judged judged_of(int i) {
   (void)quad_hinges(c.mesh, length, c.deficit, volume);
   int64_t outer = 0;
   const int *at = dvi_mesh_part_cells(c.mesh, "boundary", n - 2, &outer);
-  for (int64_t k = 0; k < outer; k++)
-    c.is_outer[at[k]] = 1;
+  for (int64_t k = 0; k < outer; k++) c.is_outer[at[k]] = 1;
   free(length), free(volume);
   return c;
 }
 
-static void end_judged(judged *c) {
+static void end_judged(judged *c)
+{
   dvi_mesh_destroy(&c->mesh);
   free(c->length), free(c->deficit), free(c->is_outer);
 }
 
-START_TEST(deficits_have_their_digits) {
+START_TEST(deficits_have_their_digits)
+{
   judged c = judged_of(_i);
   double *deficit = calloc((size_t)c.hinges, sizeof *deficit);
-  ck_assert_msg(dvi_hinge_deficits(c.mesh, c.length, deficit) == DVI_OK, "%s",
-                dvi_last_error());
+  ck_assert_msg(dvi_hinge_deficits(c.mesh, c.length, deficit) == DVI_OK, "%s", dvi_last_error());
   for (int64_t h = 0; h < c.hinges; h++)
     ck_assert_double_eq_tol(deficit[h], (double)c.deficit[h], 2e-14);
   free(deficit);
@@ -100,26 +95,26 @@ START_TEST(deficits_have_their_digits) {
 END_TEST
 
 /* Up to whole turns, of a lift up to two. */
-static void check_turns(const judged *c, int spin) {
+static void check_turns(const judged *c, int spin)
+{
   const double pi = acos(-1), turn = (spin ? 4 : 2) * pi;
   const dvi_connection_options options = {
       .size = sizeof options, .length = c->length, .spin = spin};
   dvi_connection *connection = NULL;
-  ck_assert_msg(dvi_connection_create(c->mesh, &options, &connection) == DVI_OK,
-                "%s", dvi_last_error());
+  ck_assert_msg(dvi_connection_create(c->mesh, &options, &connection) == DVI_OK, "%s",
+                dvi_last_error());
   for (int64_t h = 0; h < c->hinges; h++) {
     double angle, rest;
-    if (c->is_outer[h])
-      continue;
+    if (c->is_outer[h]) continue;
     ck_assert_int_eq(dvi_connection_turn(connection, h, &angle, &rest), DVI_OK);
-    ck_assert_double_le(fabs(remainder(angle - (double)c->deficit[h], turn)),
-                        1e-13);
+    ck_assert_double_le(fabs(remainder(angle - (double)c->deficit[h], turn)), 1e-13);
     ck_assert_double_le(rest, 1e-13);
   }
   dvi_connection_destroy(&connection);
 }
 
-START_TEST(holonomies_turn_by_the_deficits) {
+START_TEST(holonomies_turn_by_the_deficits)
+{
   judged c = judged_of(_i);
   check_turns(&c, 0);
   check_turns(&c, 1);
@@ -127,7 +122,8 @@ START_TEST(holonomies_turn_by_the_deficits) {
 }
 END_TEST
 
-SUITE(curvature_judge) {
+SUITE(curvature_judge)
+{
   tcase_add_loop_test(tests, deficits_have_their_digits, 0, MESHES);
   tcase_add_loop_test(tests, holonomies_turn_by_the_deficits, 0, MESHES);
 }

@@ -26,12 +26,13 @@ typedef struct throw
 throw;
 
 static const dvi_obstacle obstacles[] = {
-    {.name = "plane",
-     .kind = DVI_OBSTACLE_PLANE,
-     .point = {0, -0.1},
-     .normal = {0.5, 1, 0.25},
-     .restitution = 0.75,
-     },
+    {
+        .name = "plane",
+        .kind = DVI_OBSTACLE_PLANE,
+        .point = {0, -0.1},
+        .normal = {0.5, 1, 0.25},
+        .restitution = 0.75,
+    },
     {.name = "ball",
      .kind = DVI_OBSTACLE_BALL,
      .point = {-0.4, -0.8, -0.2},

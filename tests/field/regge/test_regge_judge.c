@@ -39,8 +39,8 @@ static dvi_mesh *mesh_of_case(int i)
   }
 }
 
-/* A random simplex is thin, and stays as it is. Other lengths are changed by up to a hundredth, those
- * of equilateral simplices by a tenth. */
+/* A random simplex is thin, and stays as it is. Other lengths are changed by up to a hundredth,
+ * those of equilateral simplices by a tenth. */
 static judged judged_of(int i)
 {
   judged c = {.mesh = mesh_of_case(i)};
@@ -139,7 +139,7 @@ START_TEST(hessians_are_those_of_the_action)
 }
 END_TEST
 
-/* The judge itself knows nothing of Schlaefli. Differences of thin simplices have errors of 1e-16. */
+/* The judge itself knows nothing of Schlaefli. Differences of thin simplices err by 1e-16. */
 START_TEST(changes_of_angles_drop_out)
 {
   judged c = judged_of(_i);

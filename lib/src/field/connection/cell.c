@@ -154,13 +154,13 @@ static dvi_status lay_lengths(const dvi_mesh *mesh, const double *length, int64_
 dvi_status dvi__lay_cell(const dvi_mesh *mesh, const double *length, int64_t cell,
                          dvi__laid_cell *laid)
 {
-  dvi__twofold edge[DVI_MESH_DIMENSION_MAX][DVI_MESH_SPACE_MAX];
   memset(laid, 0, sizeof *laid);
   laid->n = mesh->n;
   laid->space = mesh->space;
   if (length != NULL) {
     DVI_TRY(lay_lengths(mesh, length, cell, laid));
   } else {
+    dvi__twofold edge[DVI_MESH_DIMENSION_MAX][DVI_MESH_SPACE_MAX];
     set_edges(mesh, cell, edge);
     orthogonalise(edge, laid);
   }

@@ -15,10 +15,10 @@
 static dvi_status find_angles(const dvi_mesh *mesh, const double *length, int64_t cell,
                               dvi__twofold *angle)
 {
-  double of_cell[DVI__PAIRS];
-  dvi__measured_simplex measured;
   dvi__laid_cell laid;
   if (length != NULL) {
+    double of_cell[DVI__PAIRS];
+    dvi__measured_simplex measured;
     dvi__cell_lengths(mesh, length, cell, of_cell);
     if (!dvi__simplex_measure(mesh->n, of_cell, &measured))
       return dvi__refuse_lengths(mesh, length, cell);

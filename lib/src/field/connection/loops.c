@@ -34,9 +34,10 @@ static int64_t trace(const dvi__surface *s, const int *depth, int64_t edge, int 
     loop[i] = a;
     if (i > 0) a = dvi__cell_behind(s->mesh, a, s->parent[a]);
   }
-  for (int64_t i = before; i < before + after; i++) {
+  loop[before] = b;
+  for (int64_t i = before + 1; i < before + after; i++) {
+    b = dvi__cell_behind(s->mesh, b, s->parent[b]);
     loop[i] = b;
-    if (i + 1 < before + after) b = dvi__cell_behind(s->mesh, b, s->parent[b]);
   }
   return before + after;
 }

@@ -209,7 +209,7 @@ static double distance(int count, const double *a, const double *b)
 dvi_status dvi_connection_turn(const dvi_connection *connection, int64_t hinge, double *angle,
                                double *rest)
 {
-  double R[DVI__ROTATION_MAX], lift[DVI__SPIN_MAX], turn[DVI__ROTATION_MAX];
+  double R[DVI__ROTATION_MAX], lift[DVI__SPIN_MAX] = {0}, turn[DVI__ROTATION_MAX];
   dvi__plane plane;
   DVI_TRY(check_hinge(connection, hinge));
   if (angle == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "curvature: a place for it is needed");

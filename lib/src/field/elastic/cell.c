@@ -132,11 +132,12 @@ static inline void find_stiffness(int n, double volume, const double *g, const d
 
 int dvi__solid_stiffness(const dvi_elastic *e, int64_t cell, const double *u, double *K)
 {
-  double H[DVI__SOLID_ENTRIES], A[DVI__SOLID_ENTRIES * DVI__SOLID_ENTRIES];
+  double A[DVI__SOLID_ENTRIES * DVI__SOLID_ENTRIES];
   const int n = e->n;
   const dvi__solid_material *material = e->materials + e->material[cell];
   const double *g = e->gradient + cell * (n + 1) * n, *moduli = material->rest;
   if (u != NULL && material->law != DVI_ELASTIC_LINEAR) {
+    double H[DVI__SOLID_ENTRIES];
     dvi__displacement_gradient(n, g, u, H);
     const int returned = dvi__law_hessian(n, material, H, A);
     if (returned != 0) return returned;

@@ -150,7 +150,7 @@ dvi_status dvi_elastic_von_mises(const dvi_elastic *elastic, const double *u, do
     return dvi__fail(DVI_BAD_ARGUMENT,
                      "elastic: a solid, displacements and a place for stresses are needed");
   for (int64_t c = 0; c < elastic->cells; c++) {
-    double own[DVI__SOLID_NUMBERS] = {0}, H[DVI__SOLID_ENTRIES], sigma[9] = {0};
+    double sigma[9] = {0};
     const dvi__solid_material *material = elastic->materials + elastic->material[c];
     if (elastic->n == 2 && material->law == DVI_ELASTIC_ENERGY)
       return dvi__fail(DVI_UNSUPPORTED, "elastic: an energy that is given in a plane does not tell "
@@ -158,6 +158,7 @@ dvi_status dvi_elastic_von_mises(const dvi_elastic *elastic, const double *u, do
     const int returned = find_stress(elastic, c, u, sigma);
     if (returned != 0) return dvi__solid_refuse(elastic, c, returned);
     if (elastic->n == 2) {
+      double own[DVI__SOLID_NUMBERS] = {0}, H[DVI__SOLID_ENTRIES];
       dvi__solid_gather(elastic, c, u, own);
       dvi__solid_strain(elastic, c, own, H);
       sigma[4] = sigma[3];

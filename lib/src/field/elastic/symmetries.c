@@ -113,12 +113,17 @@ static void add(dvi__solid_system *s, int axis, int is_turn, const char *name)
       .name = of->name, .generator = is_turn ? turn : translate, .user = of};
 }
 
+int dvi__solid_has_turns(const dvi_elastic *e)
+{
+  return dvi__solid_is_linear(e) || are_objective(e);
+}
+
 void dvi__solid_find_symmetries(dvi__solid_system *s)
 {
   static const char *const momentum[] = {"momentum_x", "momentum_y", "momentum_z"},
                            *const angular[] = {"angular_x", "angular_y", "angular_z"};
   const dvi_elastic *e = s->elastic;
-  const int turns = dvi__solid_is_linear(e) || are_objective(e);
+  const int turns = dvi__solid_has_turns(e);
   for (int i = 0; i < e->n && i < AXES; i++)
     if (is_untouched(s, i) && passes_obstacles(e, i, 0)) add(s, i, 0, momentum[i]);
   for (int i = e->n == 3 ? 0 : 2; i < AXES && turns; i++)

@@ -68,4 +68,7 @@ dvi_status dvi__solid_make_contacts(dvi__solid_system *s);
 /* Tell if all laws are linear. */
 int dvi__solid_is_linear(const dvi_elastic *e);
 
+/* Tell if all laws have turns: of X if all are linear, and of X + u if none is. */
+int dvi__solid_has_turns(const dvi_elastic *e);
+
 #endif

@@ -278,19 +278,20 @@ static int energy_of_block(const dvi__solid_function *f, int some, int64_t count
   static const double time[BLOCK];
   const int entries = f->n * f->n, first = 2 * f->n;
   const dvi_potential *of = f->component;
-  double place[DVI__SOLID_PLACE * BLOCK] = {0}, slope[DVI__SOLID_PLACE * BLOCK],
-                                  second[DVI__SOLID_PLACE * DVI__SOLID_PLACE * BLOCK];
+  double place[DVI__SOLID_PLACE * BLOCK] = {0};
   int failed = 0;
   for (int e = 0; e < entries; e++)
     memcpy(place + (ptrdiff_t)(first + e) * some, F + e * count + from,
            (size_t)some * sizeof *place);
   if (W != NULL) failed = of->value_batch(some, time, place, W + from, of->user);
   if (P != NULL && failed == 0) {
+    double slope[DVI__SOLID_PLACE * BLOCK];
     failed = of->gradient_batch(some, time, place, slope, of->user);
     for (int e = 0; e < entries && failed == 0; e++)
       memcpy(P + e * count + from, slope + (ptrdiff_t)(first + e) * some, (size_t)some * sizeof *P);
   }
   if (Hessian != NULL && failed == 0) {
+    double second[DVI__SOLID_PLACE * DVI__SOLID_PLACE * BLOCK];
     failed = of->hessian_batch(some, time, place, second, of->user);
     if (failed == 0) put_second(f, some, second, count, from, Hessian);
   }
