@@ -27,7 +27,7 @@ static dvi_status refuse(const dvi__solid_avi *avi, const dvi__solid_halt *halt)
   return halt->returned > 0 ? DVI_SINGULAR : DVI_CALLBACK_FAILED;
 }
 
-/* Stand before the first event that fails up to a limit. */
+/* Stand before the first event that fails up to a limit, found by a single thread. */
 static dvi_status stand_before(dvi__solid_avi *avi, double limit)
 {
   const double before = avi->clock.t;
@@ -35,6 +35,7 @@ static dvi_status stand_before(dvi__solid_avi *avi, double limit)
   const dvi__solid_halt halt = dvi__solid_run(avi, limit);
   dvi__solid_take_back(avi);
   (void)dvi__solid_run(avi, nextafter(halt.t, -INFINITY));
+  dvi__solid_order(avi);
   avi->clock.t = fmin(fmax(avi->clock.t, before), limit);
   return dvi__fail_in(refuse(avi, &halt), "%s: at t = %g", avi->method, halt.t);
 }
@@ -43,7 +44,8 @@ static dvi_status run(dvi__solid_avi *avi, double t)
 {
   const double limit = t + roundings * fmax(fabs(t), fabs(avi->clock.t0)), before = avi->clock.t;
   avi->view->t = (double)NAN; /* events of the present time may be left after a failure */
-  const dvi__solid_halt halt = dvi__solid_run(avi, limit);
+  const dvi__solid_halt halt = avi->members != NULL ? dvi__solid_run_members(avi, limit)
+                                                    : dvi__solid_run(avi, limit);
   if (halt.returned != 0) {
     avi->clock.t = before;
     return stand_before(avi, limit);
