@@ -6,19 +6,22 @@
  *
  *     w = v + d,    d = sum over the cells K of the node of  f_K (t - t_K - h_K/2)/m,
  *
- * since the last kicks, at t_K, pay for t_K - h_K/2 < t < t_K + h_K/2. The forces f_K are those at t.
- * With the ones at t_K, which differ by O(h), w would still be right to order 2, but its error has a
- * mean, which gives energy to all hits. Nodes of a cell are taken to fly on from its last event, so
- * that a hit needs nothing that other cells change. The part of w along the outer normal N changes from w_N to -e w_N, and friction takes at most mu (1 + e) |w_N| along the surface
- * (Fetecau, Marsden, Ortiz and West 2003, with Coulomb's friction). The node flies on with w - d.
- * Components that are given stay as they are: N is replaced by its free part.
+ * since the last kicks, at t_K, pay for t_K - h_K/2 < t < t_K + h_K/2. The forces f_K are those at
+ * t. With the ones at t_K, which differ by O(h), w would still be right to order 2, but its error
+ * has a mean, by which hits would gain energy. Nodes of a cell are taken to fly on from its last
+ * event, so that a hit needs nothing that other cells change.
  *
- * With S = sum f_K/m, the surface presses with p = -S.N on a node that lies on it, and with
- * |v|^2/R more inside of a ball and less outside. A node rests if p >= 0 and it would rise for less
- * than half of its shortest step, or if its flight would not rise at all. Then it stays on the
- * surface until p < 0, and friction slows it down by mu p or holds it. Here the
- * forces are those of the last events. So nothing sinks, trembles or
- * gains energy. A rest takes at most the energy of such a hop, O(h^2). */
+ * The part of w along the outer normal N changes from -w_N to e w_N, and friction takes at most
+ * mu (1 + e) w_N along the surface (Fetecau, Marsden, Ortiz and West 2003, with Coulomb's friction).
+ * The node flies on with w - d. Components that are given stay as they are: N is replaced by its
+ * free part.
+ *
+ * With S = sum f_K/m, the surface presses with p = -S.N on a node that lies on it, and with |v|^2/R
+ * more inside of a ball and less outside. A node rests if p >= 0 and it would rise for less than
+ * half of its shortest step, or if its flight would not rise at all. Then it stays on the surface
+ * until p < 0, and friction slows it down by mu p or holds it. Here the forces are those of the
+ * last events, for which friction has an error of O(h). So nothing sinks, trembles or gains energy.
+ * A rest takes at most the energy of such a hop, O(h^2). */
 #include <math.h>
 #include <string.h>
 
@@ -41,8 +44,8 @@ typedef struct flight {
   dvi__solid_touch *touch;
 } flight;
 
-/* Where a node meets an obstacle, and what its cells do there. Velocities are as at the begin of the
- * flight. */
+/* Where a node meets an obstacle, and what its cells do there. Velocities are those at the begin of
+ * the flight. */
 typedef struct meeting {
   double gap, normal[DVI__SOLID_AXES], free[DVI__SOLID_AXES]; /* and the free part of the normal */
   double square;                                              /* of the free part */

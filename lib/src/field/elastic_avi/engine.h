@@ -156,7 +156,7 @@ void dvi__solid_bounce(const dvi__solid_avi *avi, int vertex, double t, double l
 void dvi__solid_rest(const dvi__solid_avi *avi, int vertex, const dvi__solid_node *node,
                      const dvi__solid_touch *touch, double *rate);
 
-/* Keep an event of a cell at displacements u [(n+1)*n], with forces f, for the hits of its nodes. */
+/* Keep an event of a cell at displacements u [(n+1)*n], with forces f, for hits of its nodes. */
 void dvi__solid_note(dvi__solid_avi *avi, int64_t c, double t, const double *u, const double *f);
 
 /* The touch of a node, or NULL without obstacles. */

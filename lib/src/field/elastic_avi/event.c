@@ -125,8 +125,8 @@ static double size_of_work(const dvi__solid_avi *avi, int64_t c, const double *v
 static int act_guarded(dvi__solid_avi *avi, int64_t c, double t)
 {
   const int n = avi->n, *corner = avi->corner + c * (n + 1);
-  double u[DVI__SOLID_NUMBERS], v[DVI__SOLID_NUMBERS], f[DVI__SOLID_NUMBERS],
-      load[DVI__SOLID_NUMBERS];
+  double u[DVI__SOLID_NUMBERS] = {0}, v[DVI__SOLID_NUMBERS] = {0}, f[DVI__SOLID_NUMBERS],
+         load[DVI__SOLID_NUMBERS];
   for (int a = 0; a <= n; a++) {
     dvi__solid_node *node = avi->state.node + corner[a];
     const double before = dvi__solid_driven_energy(avi, corner[a], node);

@@ -91,8 +91,8 @@ static void take_values(dvi__solid_avi *avi, double t)
 static int kick_first(dvi__solid_avi *avi, int64_t c, double t)
 {
   const int n = avi->n, *corner = avi->corner + c * (n + 1);
-  double u[DVI__SOLID_NUMBERS], w[DVI__SOLID_NUMBERS], f[DVI__SOLID_NUMBERS],
-      load[DVI__SOLID_NUMBERS], answer[DVI__SOLID_NUMBERS] = {0};
+  double u[DVI__SOLID_NUMBERS] = {0}, w[DVI__SOLID_NUMBERS] = {0}, f[DVI__SOLID_NUMBERS] = {0},
+         load[DVI__SOLID_NUMBERS], answer[DVI__SOLID_NUMBERS] = {0};
   dvi__solid_gather(avi->solid, avi->name[c], avi->view->u, u);
   dvi__solid_gather(avi->solid, avi->name[c], avi->view->rate, w);
   const int returned = dvi__solid_pull(avi, c, t, u, f, load);

@@ -7,7 +7,8 @@
  *     v_a(t) = v_a + sum over K of f_K(u(t)) (t - t_K - h_K/2)/m_a,
  *
  * which is of order 2 at any t. A damping beta has answered w of event.c, and owes what u(t)
- * differs from it. A node that rests on an obstacle has no velocity through it. Where alpha is not 0, what cells owe is that of field/step/decay.h. */
+ * differs from it. A node that rests on an obstacle has no velocity through it. Where alpha is not
+ * 0, what cells owe is that of field/step/decay.h. */
 #include <math.h>
 #include <string.h>
 
@@ -78,7 +79,7 @@ static dvi_status see_rate(const dvi__solid_avi *avi, int vertex, double *rate)
   for (int64_t k = avi->cell_start[vertex]; k < avi->cell_start[vertex + 1]; k++) {
     const int64_t c = avi->cell_of[k];
     const int *corner = avi->corner + c * (n + 1);
-    double u[DVI__SOLID_NUMBERS], debt[DVI__SOLID_NUMBERS];
+    double u[DVI__SOLID_NUMBERS] = {0}, debt[DVI__SOLID_NUMBERS] = {0};
     for (int a = 0; a <= n; a++) {
       DVI_TRY(see_node(avi, corner[a], &node));
       for (int i = 0; i < n; i++) u[a * n + i] = node.u[i];
@@ -113,11 +114,12 @@ static dvi_status see_debts(const dvi__solid_avi *avi)
 {
   const int n = avi->n;
   for (int64_t c = 0; c < avi->active; c++) {
-    double u[DVI__SOLID_NUMBERS], debt[DVI__SOLID_NUMBERS];
+    double u[DVI__SOLID_NUMBERS] = {0}, debt[DVI__SOLID_NUMBERS] = {0};
     dvi__solid_gather(avi->solid, avi->name[c], avi->view->u, u);
     DVI_TRY(see_debt(avi, c, u, debt));
-    for (int k = 0; k < (n + 1) * n; k++)
-      avi->view->rate[(int64_t)avi->corner[c * (n + 1) + k / n] * n + k % n] += debt[k];
+    for (int a = 0; a <= n; a++)
+      for (int i = 0; i < n; i++)
+        avi->view->rate[(int64_t)avi->corner[c * (n + 1) + a] * n + i] += debt[a * n + i];
   }
   return DVI_OK;
 }
