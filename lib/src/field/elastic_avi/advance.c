@@ -13,7 +13,7 @@ enum { STEPS_BETWEEN_CHECKS = 64 };
 
 static const double roundings = 4 * DBL_EPSILON;
 
-/* Stand before the first event that fails up to a limit. */
+/* Stand before the first event that fails up to a limit, found by a single thread. */
 static dvi_status stand_before(dvi__solid_avi *avi, double limit)
 {
   const double before = avi->clock.t;
@@ -21,6 +21,7 @@ static dvi_status stand_before(dvi__solid_avi *avi, double limit)
   const dvi__solid_halt halt = dvi__solid_run(avi, limit);
   dvi__solid_take_back(avi);
   (void)dvi__solid_run(avi, nextafter(halt.t, -INFINITY));
+  dvi__solid_order(avi);
   avi->clock.t = fmin(fmax(avi->clock.t, before), limit);
   (void)dvi__solid_refuse(avi->solid, avi->name[halt.cell], halt.returned);
   return dvi__fail_in(halt.returned > 0 ? DVI_SINGULAR : DVI_CALLBACK_FAILED, "%s: at t = %g",
@@ -31,7 +32,8 @@ static dvi_status run(dvi__solid_avi *avi, double t)
 {
   const double limit = t + roundings * fmax(fabs(t), fabs(avi->clock.t0)), before = avi->clock.t;
   avi->view->t = (double)NAN; /* events of the present time may be left after a failure */
-  const dvi__solid_halt halt = dvi__solid_run(avi, limit);
+  const dvi__solid_halt halt = avi->members != NULL ? dvi__solid_run_members(avi, limit)
+                                                    : dvi__solid_run(avi, limit);
   if (halt.returned != 0) {
     avi->clock.t = before;
     return stand_before(avi, limit);

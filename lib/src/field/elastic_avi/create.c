@@ -5,6 +5,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "field/elastic_avi/layout.h"
+#include "field/elastic_avi/members.h"
 
 static void destroy_view(dvi__solid_view *view)
 {
@@ -23,6 +24,7 @@ void dvi__solid_avi_destroy(dvi__solid_avi **avi)
   for (size_t i = 0; i < sizeof memory / sizeof *memory; i++) dvi__release(memory[i]);
   destroy_view(s->view);
   dvi__calendar_destroy(&s->calendar);
+  dvi__solid_members_destroy(&s->members);
   dvi__release(s);
   *avi = NULL;
 }
@@ -101,6 +103,7 @@ dvi_status dvi__solid_avi_create(const dvi_elastic *solid, const dvi__solid_requ
   dvi_status status = allocate(s);
   if (status == DVI_OK) status = dvi__solid_lay_out(&plan, s);
   if (status == DVI_OK && s->is_free) status = make_calendar(s);
+  if (status == DVI_OK && s->threads > 1) status = dvi__solid_members_create(s);
   dvi__solid_plan_clear(&plan);
   if (status == DVI_OK)
     *avi = s;

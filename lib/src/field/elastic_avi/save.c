@@ -28,9 +28,10 @@ static uint64_t hash_of(const dvi__solid_avi *avi)
   hash = dvi__hash(hash, cells * sizeof *avi->step, avi->step);
   for (int i = 0; i < e->material_count; i++) {
     const dvi__solid_material *m = e->materials + i;
-    const double law = (double)m->law,
-                 numbers[] = {law, m->lambda, m->mu, m->mooney, m->rho, m->alpha, m->beta};
-    hash = dvi__hash(hash, sizeof numbers, numbers);
+    const double *const number[] = {&m->lambda, &m->mu, &m->mooney, &m->rho, &m->alpha, &m->beta};
+    hash = dvi__hash(hash, sizeof m->law, &m->law);
+    for (size_t k = 0; k < sizeof number / sizeof *number; k++)
+      hash = dvi__hash(hash, sizeof *number[k], number[k]);
   }
   return hash;
 }
