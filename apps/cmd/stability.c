@@ -1,4 +1,4 @@
-/* dvi stability, which tells how fast a field grows under steps or tents, before a run. */
+/* dvi stability, which tells how fast a field or a solid grows under its steps, before a run. */
 #include <dvi/scene.h>
 #include <dvi/march.h>
 #include <math.h>
@@ -72,7 +72,8 @@ static const char *const details[] = {
     "all steps, with all of its modes; of a large field, and of steps without a common period, as "
     "most tents are, the fields that grow\n"
     "fastest are searched, and the resolution says which growth the search can have missed. Losses "
-    "are counted, and sources left out. Of a solid these are small vibrations about rest.\n"
+    "are counted, and sources left out. Of a solid small vibrations about rest are followed, "
+    "without loads and obstacles.\n"
     "The exit code is 0 for growth, too.\n",
     "Columns of --csv: method, schedule, period, growth, rate, resolution, result.\n",
     "Examples:\n"
@@ -86,8 +87,8 @@ static const option command_options[] = {
     {.name = "method",
      OPTION_AT(stability_request, methods),
      .value = "SPEC",
-     .help = "avi, avi:classes=no, tents, or verlet of a solid; may be repeated; default: the "
-             "scene's, or avi"},
+     .help = "avi, avi:classes=no, or tents of a field; may be repeated; default: the scene's, or "
+             "avi"},
     {.name = "fraction",
      OPTION_AT(stability_request, fraction),
      .value = "F",

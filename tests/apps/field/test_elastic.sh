@@ -34,6 +34,18 @@ expect 0 'what a march costs' explain block.yaml
 says out '^solid: 81 unknown displacements, 0 given; mass 1,' 'the solid'
 says out '^cost: .* evaluations of cells' 'cells against those of equal steps'
 
+# Steps of several lengths can be in resonance with vibrations, which shows before a run.
+sed 's/grading: 2/grading: 3.5/' block.yaml >graded.yaml
+expect 0 'stable steps' stability graded.yaml
+says out '^  avi  *3 classes of steps, .* 1\.000000000 .*  stable$' 'no growth'
+expect 0 'a resonance' stability graded.yaml --fraction 0.9 --method avi --method avi:classes=no
+says out '^  avi  *3 classes of steps, .* 1\.036976866 .*  grows$' 'growth in classes'
+says out '^  avi:classes=no .* without a common period .*  grows$' 'growth of free steps'
+expect 2 'equal steps' stability block.yaml --method verlet
+says err 'verlet has equal steps, which are stable below their bound' 'why not'
+expect 0 'laws' check block.yaml
+says out '^laws of avi .* momentum .*, angular .*, energy .*(bounded)$' 'momenta stay'
+
 # Nodes stand where they are, in files of marches and of mechanical methods alike.
 expect 0 'frames of a march' run block.yaml --final --pvd march.pvd
 expect 0 'frames of a method' run block.yaml --method midpoint --h 0.1 --final --pvd state.pvd
