@@ -389,7 +389,26 @@ START_TEST(cuts_and_saves_among_hits_change_no_bit)
 }
 END_TEST
 
-/* Weight, friction and restitution in a hollow ball about the middle of a block. */
+START_TEST(threads_change_no_bit_among_hits)
+{
+  double force[] = {g_along, -g_down}, E[NUMBERS_MOST];
+  dvi_elastic *solid = falling(0.5, 0.3, 0.01, 0, force);
+  const dvi_march_options options = {
+      .size = sizeof options, .method = methods[_i], .fraction = 0.4, .threads = 3};
+  dvi_march *one = thrown(solid, methods[_i], 0.4, 0.25, -0.25), *three = NULL;
+  ck_assert(dvi_elastic_march_create(solid, &options, &three) == DVI_OK);
+  for (int i = 0; i < 18; i++) E[i] = i % 2 ? 0.25 : -0.25;
+  const dvi_march_state state = {.size = sizeof state, .E = E};
+  ck_assert(dvi_march_start(three, &state) == DVI_OK);
+  advance(one, 5);
+  advance(three, 5);
+  check_same(one, three);
+  dvi_march_destroy(&one);
+  dvi_march_destroy(&three);
+  dvi_elastic_destroy(&solid);
+}
+END_TEST
+
 START_TEST(a_block_stays_in_a_cave)
 {
   double u[NUMBERS_MOST], rate[NUMBERS_MOST];
@@ -446,6 +465,7 @@ SUITE(elastic_contacts)
   tcase_add_loop_test(tests, friction_takes_its_part_of_the_impulse, 0, 6 * METHODS);
   tcase_add_loop_test(tests, friction_stops_and_holds_a_block, 0, METHODS);
   tcase_add_loop_test(tests, cuts_and_saves_among_hits_change_no_bit, 0, METHODS);
+  tcase_add_loop_test(tests, threads_change_no_bit_among_hits, 0, METHODS);
   tcase_add_loop_test(tests, a_block_stays_in_a_cave, 0, 2 * METHODS);
   tcase_add_loop_test(tests, a_start_inside_of_an_obstacle_is_refused, 0, METHODS);
 }

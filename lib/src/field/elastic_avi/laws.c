@@ -99,7 +99,7 @@ static dvi_status begin(const laws *s)
 
 /* ---- what is measured ---- */
 
-/* Give the component k of m u', or from k = n on that of x × m u' about the origin, and the sum of
+/* Give the component k of m u', or from k = n on that of x cross m u' about the origin, and the sum of
  * the sizes of its terms. */
 static double momentum(const laws *s, int k, double *size)
 {

@@ -150,14 +150,19 @@ static double reference_energy(const dvi__solid_avi *avi)
   return sum;
 }
 
+dvi_status dvi__solid_avi_see(const dvi__solid_avi *avi)
+{
+  avi->view->t = (double)NAN;
+  DVI_TRY(see_nodes(avi));
+  DVI_TRY(see_debts(avi));
+  return see_rests(avi);
+}
+
 dvi_status dvi__solid_avi_look(const dvi__solid_avi *avi)
 {
   dvi__solid_view *view = avi->view;
   if (view->t == avi->clock.t) return DVI_OK;
-  view->t = (double)NAN;
-  DVI_TRY(see_nodes(avi));
-  DVI_TRY(see_debts(avi));
-  DVI_TRY(see_rests(avi));
+  DVI_TRY(dvi__solid_avi_see(avi));
   DVI_TRY(dvi_elastic_energy(avi->solid, avi->clock.t, view->u, view->rate, NULL, &view->energies));
   const double reference = reference_energy(avi);
   view->growth = reference > 0 ? (view->energies.kinetic + view->energies.stored) / reference : 1;
