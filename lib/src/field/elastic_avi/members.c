@@ -326,12 +326,14 @@ dvi_status dvi__solid_members_create(dvi__solid_avi *avi)
   dvi__solid_members *all = avi->members = DVI_NEW(dvi__solid_members, 1);
   int *numbers = DVI_NEW(int, 3 * avi->active);
   uint8_t *is_edge = DVI_NEW(uint8_t, avi->active);
-  dvi_status status = all && numbers && is_edge ? DVI_OK : no_memory(avi);
-  if (status == DVI_OK) {
+  dvi_status status;
+  if (all == NULL || numbers == NULL || is_edge == NULL) {
+    status = no_memory(avi);
+  } else {
+    const survey s = {numbers, numbers + avi->active, numbers + 2 * avi->active};
     all->count = (int)(avi->threads < avi->active ? avi->threads : avi->active);
     all->member = DVI_NEW(member, all->count);
     all->outcome = DVI_NEW(outcome, all->count);
-    const survey s = {numbers, numbers + avi->active, numbers + 2 * avi->active};
     status = all->member && all->outcome ? fill(avi, all, numbers, is_edge, &s) : no_memory(avi);
   }
   dvi__release(numbers);
