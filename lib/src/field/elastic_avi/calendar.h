@@ -13,17 +13,23 @@ typedef struct dvi__calendar_event {
   int64_t number;
 } dvi__calendar_event;
 
+typedef struct dvi__calendar_entry {
+  double t;
+  int64_t link; /* the next number of its list */
+} dvi__calendar_entry;
+
 typedef struct dvi__calendar {
   int64_t count;
   double origin, days_per_time;
-  int is_open;                /* the events of today are sorted */
-  int64_t today, days;        /* days since the origin, and a power of 2 */
-  int64_t waiting;            /* events in lists */
-  int64_t first, end;         /* of the events of today that have not happened */
-  int64_t *head;              /* [days] lists of numbers, -1 at their end */
-  int64_t *link;              /* [numbers] */
-  double *time;               /* [numbers] of the events in lists */
-  dvi__calendar_event *event; /* [numbers] of today */
+  int is_open;                 /* the events of today are sorted */
+  int64_t today, days;         /* days since the origin, and a power of 2 */
+  int64_t waiting;             /* events in lists */
+  int64_t first, end;          /* of the events of today that have not happened */
+  int64_t soon;                /* a number of tomorrow's list, or -1 */
+  int64_t *head;               /* [days] lists of numbers, -1 at their end */
+  dvi__calendar_entry *entry;  /* [numbers] of lists */
+  dvi__calendar_event *event;  /* [numbers] of today */
+  dvi__calendar_event *merged; /* [numbers] memory to sort them */
 } dvi__calendar;
 
 /* Create a calendar for numbers below `count`, each of which has one event at a time, at most
@@ -41,10 +47,22 @@ void dvi__calendar_put(dvi__calendar *calendar, double t, int64_t number);
 /* Return the next event, or NULL if there is none. */
 const dvi__calendar_event *dvi__calendar_next(dvi__calendar *calendar);
 
-/* Take the next event, after dvi__calendar_next. */
+/* Take the next event, after dvi__calendar_next. Meanwhile fetch tomorrow's list, whose numbers are
+ * strewn over the memory. */
 static inline void dvi__calendar_take(dvi__calendar *calendar)
 {
   calendar->first++;
+  if (calendar->soon < 0) return;
+  calendar->soon = calendar->entry[calendar->soon].link;
+  if (calendar->soon >= 0) __builtin_prefetch(calendar->entry + calendar->soon);
+}
+
+/* Return the number of the event that is a few events after the next one, or -1 if that is not
+ * known yet. */
+static inline int64_t dvi__calendar_ahead(const dvi__calendar *calendar, int events)
+{
+  const int64_t place = calendar->first + events;
+  return place < calendar->end ? calendar->event[place].number : -1;
 }
 
 #endif

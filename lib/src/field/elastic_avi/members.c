@@ -138,6 +138,10 @@ static void run_calendar(void *user, int number)
     const dvi__calendar_event *first = dvi__calendar_next(own->calendar);
     if (first == NULL || !(first->t <= r->limit)) return;
     const dvi__calendar_event next = *first;
+    const int64_t far = dvi__calendar_ahead(own->calendar, 2 * DVI__SOLID_AHEAD),
+                  near = dvi__calendar_ahead(own->calendar, DVI__SOLID_AHEAD);
+    if (far >= 0) dvi__solid_announce(r->avi, own->cell[far]);
+    if (near >= 0) dvi__solid_fetch(r->avi, own->cell[near]);
     const int cell = own->cell[next.number], edge = own->edge[next.number];
     if (!act(r, out, cell, edge, next.t, next.t)) return;
     const int64_t count = ++r->avi->state.count[cell];
@@ -322,12 +326,14 @@ dvi_status dvi__solid_members_create(dvi__solid_avi *avi)
   dvi__solid_members *all = avi->members = DVI_NEW(dvi__solid_members, 1);
   int *numbers = DVI_NEW(int, 3 * avi->active);
   uint8_t *is_edge = DVI_NEW(uint8_t, avi->active);
-  dvi_status status = all && numbers && is_edge ? DVI_OK : no_memory(avi);
-  if (status == DVI_OK) {
+  dvi_status status;
+  if (all == NULL || numbers == NULL || is_edge == NULL) {
+    status = no_memory(avi);
+  } else {
+    const survey s = {numbers, numbers + avi->active, numbers + 2 * avi->active};
     all->count = (int)(avi->threads < avi->active ? avi->threads : avi->active);
     all->member = DVI_NEW(member, all->count);
     all->outcome = DVI_NEW(outcome, all->count);
-    const survey s = {numbers, numbers + avi->active, numbers + 2 * avi->active};
     status = all->member && all->outcome ? fill(avi, all, numbers, is_edge, &s) : no_memory(avi);
   }
   dvi__release(numbers);
