@@ -283,6 +283,128 @@ START_TEST(loads_conditions_and_damping_have_order_2)
 }
 END_TEST
 
+/* ---- failures ---- */
+
+/* The side X = 0 is pushed through the block, which inverts a cell at about t = 1. */
+static int crush(double t, const double *X, double *u, double *rate, void *user)
+{
+  (void)X, (void)user;
+  u[0] = t, rate[0] = 1;
+  return 0;
+}
+
+/* Works until t = 1. */
+static int break_down(double t, const double *X, double *u, double *rate, void *user)
+{
+  (void)X, (void)u, (void)rate;
+  return t > 1 ? *(const int *)user : 0;
+}
+
+static dvi_elastic *
+held_block(int (*displacement)(double, const double *, double *, double *, void *), int *returned)
+{
+  const dvi_elastic_condition condition[] = {
+      {.part = "left", .displacement = displacement, .user = returned}, {.part = "right"}};
+  const dvi_generator_options options = {.cells = {2, 2, 2}, .grading = {2}};
+  return solid_on(generated("kuhn", options), unit_material(DVI_ELASTIC_NEO_HOOKEAN),
+                  (dvi_elastic_terms){.condition = condition, .conditions = 2});
+}
+
+/* Advance until a failure, and require that the march stands before it, and does so again. */
+static void check_halt(dvi_march *march, dvi_status expected, const char *words)
+{
+  double u[2][NUMBERS_MOST];
+  begin(march, NULL, NULL);
+  ck_assert_msg(dvi_march_advance(march, 3) == expected, "%s", dvi_last_error());
+  ck_assert_msg(strstr(dvi_last_error(), words) != NULL, "%s", dvi_last_error());
+  const double t = dvi_march_time(march);
+  ck_assert(t > 0.1 && t < 1.2);
+  sample(march, DVI_FORM_A, u[0]);
+  ck_assert(dvi_march_advance(march, 3) == expected);
+  ck_assert_double_eq(dvi_march_time(march), t);
+  sample(march, DVI_FORM_A, u[1]);
+  for (int64_t i = 0; i < dvi_march_size(march, DVI_FORM_A); i++)
+    ck_assert(isfinite(u[0][i]) && u[0][i] == u[1][i]);
+}
+
+START_TEST(a_march_stands_before_a_cell_is_inverted)
+{
+  dvi_elastic *solid = held_block(crush, NULL);
+  dvi_march *march = march_of(solid, methods[_i], 0.2);
+  check_halt(march, DVI_SINGULAR, "invert");
+  dvi_march_destroy(&march);
+  dvi_elastic_destroy(&solid);
+}
+END_TEST
+
+START_TEST(a_condition_that_fails_is_named)
+{
+  int returned = _i / METHODS ? 7 : -3;
+  dvi_elastic *solid = held_block(break_down, &returned);
+  dvi_march *march = march_of(solid, methods[_i % METHODS], 0.2);
+  check_halt(march, DVI_CALLBACK_FAILED,
+             returned == 7 ? "a displacement that is given at" : "returned -3");
+  dvi_march_destroy(&march);
+  dvi_elastic_destroy(&solid);
+}
+END_TEST
+
+/* The swing of the energy is taken for a growth by a narrow band. The run goes on. */
+START_TEST(an_alarm_tells_that_the_energy_grew)
+{
+  dvi_elastic *solid = block(3, 2, 2, DVI_ELASTIC_SVK);
+  dvi_march *march = spun(solid, "avi:band=1.00001", 0.9, 1);
+  dvi_status status = DVI_OK;
+  for (int k = 1; k < 100 && status == DVI_OK; k++) status = dvi_march_advance(march, k);
+  ck_assert_msg(status == DVI_STEP_TOO_LARGE, "%s", dvi_last_error());
+  ck_assert_ptr_nonnull(strstr(dvi_last_error(), "times that of the start and what loads"));
+  advance(march, 100);
+  dvi_march_destroy(&march);
+  dvi_elastic_destroy(&solid);
+}
+END_TEST
+
+/* Far from rest a bound at rest is none. */
+START_TEST(a_run_without_end_is_stopped)
+{
+  dvi_elastic *solid = block(3, 2, 2, DVI_ELASTIC_SVK);
+  dvi_march *march = spun(solid, "verlet", 0.9, 2.5);
+  dvi_status status = DVI_OK;
+  for (int k = 1; k < 100 && status == DVI_OK; k++) status = dvi_march_advance(march, k);
+  ck_assert_msg(status == DVI_NOT_FINITE, "%s", dvi_last_error());
+  ck_assert_ptr_nonnull(strstr(dvi_last_error(), "the run cannot go on; take shorter steps"));
+  dvi_march_destroy(&march);
+  dvi_elastic_destroy(&solid);
+}
+END_TEST
+
+START_TEST(steps_beyond_the_bound_are_refused)
+{
+  dvi_elastic *solid = block(3, 2, 2, DVI_ELASTIC_SVK);
+  const dvi_march_options options = {.size = sizeof options, .method = methods[_i], .step = 10};
+  dvi_march *march = NULL;
+  ck_assert(dvi_elastic_march_create(solid, &options, &march) == DVI_BAD_ARGUMENT);
+  ck_assert_ptr_null(march);
+  ck_assert_ptr_nonnull(strstr(dvi_last_error(), "are not stable; the least bound is"));
+  dvi_elastic_destroy(&solid);
+}
+END_TEST
+
+/* A swing of the side moves its own mass, too, which no force of a cell does. */
+START_TEST(conditions_that_work_ring_no_alarm)
+{
+  dvi_elastic *solid = driven_block(0, 0);
+  dvi_march *march = march_of(solid, methods[_i], 0.4);
+  begin(march, NULL, NULL);
+  for (int k = 1; k <= 40; k++) {
+    advance(march, k / 4.0);
+    ck_assert_double_lt(observed(march, "growth"), 1.01);
+  }
+  dvi_march_destroy(&march);
+  dvi_elastic_destroy(&solid);
+}
+END_TEST
+
 SUITE(elastic_avi)
 {
   tcase_add_loop_test(tests, the_free_block_has_its_digits_with_order_2, 0, 2 * METHODS);
@@ -292,4 +414,10 @@ SUITE(elastic_avi)
   tcase_add_loop_test(tests, classes_have_the_bits_of_the_calendar, 0, 2);
   tcase_add_test(tests, the_energy_of_classes_stays_for_a_long_time);
   tcase_add_loop_test(tests, loads_conditions_and_damping_have_order_2, 0, 12);
+  tcase_add_loop_test(tests, a_march_stands_before_a_cell_is_inverted, 0, METHODS);
+  tcase_add_loop_test(tests, a_condition_that_fails_is_named, 0, 2 * METHODS);
+  tcase_add_test(tests, an_alarm_tells_that_the_energy_grew);
+  tcase_add_test(tests, a_run_without_end_is_stopped);
+  tcase_add_loop_test(tests, steps_beyond_the_bound_are_refused, 0, METHODS);
+  tcase_add_loop_test(tests, conditions_that_work_ring_no_alarm, 0, METHODS);
 }

@@ -44,7 +44,8 @@ static dvi_status energy_at(void *of, double t, double *energy)
 dvi__flow dvi__avi_flow(dvi__avi *avi)
 {
   return (dvi__flow){.n = avi->free_edges,
-                     .faces = avi->active_faces,
+                     .strains = avi->active_faces,
+                     .strain = &dvi__strain_of_forms,
                      .width = avi->width,
                      .facet = avi->facet,
                      .M1 = avi->M1,
@@ -62,21 +63,6 @@ dvi__flow dvi__avi_flow(dvi__avi *avi)
 }
 
 /* ---- the report ---- */
-
-static void describe(const dvi__avi *avi, dvi_stability *report)
-{
-  const double from = avi->shortest, to = avi->longest;
-  if (from == to)
-    dvi__say_schedule(report, "equal steps of %.6g", from);
-  else if (!avi->is_queued)
-    dvi__say_schedule(report, "%d classes of steps, powers of 2 from %.6g to %.6g", avi->classes,
-                      from, to);
-  else if (report->period > 0)
-    dvi__say_schedule(report, "free steps from %.6g to %.6g with the common period %.6g", from, to,
-                      report->period);
-  else
-    dvi__say_schedule(report, "free steps from %.6g to %.6g without a common period", from, to);
-}
 
 static dvi_status find_growth(dvi__avi *avi, double span, dvi_stability *report)
 {
@@ -100,7 +86,7 @@ dvi_status dvi__avi_stability(const dvi__avi_terms *terms, double span, dvi_stab
   const dvi_status status = find_growth(avi, span, &found);
   if (status == DVI_OK) {
     found.is_stable = found.growth <= 1 + found.resolution;
-    describe(avi, &found);
+    dvi__say_steps(&found, avi->shortest, avi->longest, avi->is_queued ? 0 : avi->classes);
     *report = found;
   }
   dvi__avi_destroy(&avi);

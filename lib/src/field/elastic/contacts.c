@@ -6,6 +6,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "field/elastic/contacts.h"
 #include "field/elastic/system.h"
 
 /* ---- the geometry of an obstacle ---- */
@@ -18,22 +19,21 @@ typedef struct meeting {
   double gap;
 } meeting;
 
-/* Give the gap at x, and its gradient, a unit vector [n]. At the centre of a ball it is that of the
- * first axis. */
-static double find_gap(const dvi_obstacle *o, int n, const double *x, double *normal)
+double dvi__solid_gap(const dvi_obstacle *o, int n, const double *x, double *normal)
 {
-  double gap = 0, distance = 0;
-  for (int i = 0; i < n; i++) {
-    gap += (x[i] - o->point[i]) * o->normal[i];
-    distance = hypot(distance, x[i] - o->point[i]);
-  }
-  const int is_plane = o->kind == DVI_OBSTACLE_PLANE;
   const double sign = o->kind == DVI_OBSTACLE_BALL ? 1 : -1;
+  double gap = 0, distance = 0;
+  if (o->kind == DVI_OBSTACLE_PLANE) {
+    for (int i = 0; i < n; i++) {
+      gap += (x[i] - o->point[i]) * o->normal[i];
+      normal[i] = o->normal[i];
+    }
+    return gap;
+  }
+  for (int i = 0; i < n; i++) distance = hypot(distance, x[i] - o->point[i]);
   for (int i = 0; i < n; i++)
-    normal[i] = is_plane        ? o->normal[i]
-                : distance == 0 ? sign * (i == 0)
-                                : sign * (x[i] - o->point[i]) / distance;
-  return is_plane ? gap : sign * (distance - o->radius);
+    normal[i] = distance == 0 ? sign * (i == 0) : sign * (x[i] - o->point[i]) / distance;
+  return sign * (distance - o->radius);
 }
 
 /* Returns as callbacks do. */
@@ -47,7 +47,7 @@ static int meet(const dvi__solid_contact *of, double t, const double *q, meeting
   }
   const int returned = dvi__solid_given(e, of->vertex, t, at->x, at->rate);
   for (int i = 0; i < e->n; i++) at->x[i] += e->point[of->vertex * e->n + i];
-  at->gap = find_gap(of->obstacle, e->n, at->x, at->normal);
+  at->gap = dvi__solid_gap(of->obstacle, e->n, at->x, at->normal);
   return returned;
 }
 

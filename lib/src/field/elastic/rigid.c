@@ -146,11 +146,11 @@ void dvi__rigid_clear(dvi__rigid *rigid)
   *rigid = (dvi__rigid){0};
 }
 
-double dvi__rigid_share(const dvi__rigid *rigid, const double *x)
+/* Sum m x times the motions of each body. */
+static void sum_up(const dvi__rigid *rigid, const double *x)
 {
   const dvi_elastic *e = rigid->elastic;
   const int n = e->n, motions = motions_of(n);
-  double share = 0;
   memset(rigid->sum, 0, (size_t)rigid->bodies * MOTIONS * sizeof *rigid->sum);
   for (int64_t v = 0; v < e->vertices; v++) {
     double motion[MOTIONS][AXES];
@@ -161,12 +161,47 @@ double dvi__rigid_share(const dvi__rigid *rigid, const double *x)
         rigid->sum[(int64_t)rigid->body[v] * MOTIONS + s] += e->mass[v] * motion[s][i] * x[k];
     }
   }
+}
+
+/* The part that a body has of its r-th motion. */
+static double part_of(const dvi__rigid *rigid, int64_t b, int r)
+{
+  double product = 0;
+  for (int s = 0; s < motions_of(rigid->elastic->n); s++)
+    product += rigid->of[b].coefficient[r][s] * rigid->sum[b * MOTIONS + s];
+  return product;
+}
+
+double dvi__rigid_share(const dvi__rigid *rigid, const double *x)
+{
+  double share = 0;
+  sum_up(rigid, x);
   for (int64_t b = 0; b < rigid->bodies; b++)
     for (int r = 0; r < rigid->of[b].count; r++) {
-      double product = 0;
-      for (int s = 0; s < motions; s++)
-        product += rigid->of[b].coefficient[r][s] * rigid->sum[b * MOTIONS + s];
-      share += product * product;
+      const double part = part_of(rigid, b, r);
+      share += part * part;
     }
   return share;
+}
+
+void dvi__rigid_remove(const dvi__rigid *rigid, double *x)
+{
+  const dvi_elastic *e = rigid->elastic;
+  const int n = e->n, motions = motions_of(n);
+  sum_up(rigid, x);
+  for (int64_t b = 0; b < rigid->bodies; b++) {
+    double part[MOTIONS] = {0};
+    for (int r = 0; r < rigid->of[b].count; r++)
+      for (int s = 0; s < motions; s++)
+        part[s] += part_of(rigid, b, r) * rigid->of[b].coefficient[r][s];
+    memcpy(rigid->sum + b * MOTIONS, part, sizeof part);
+  }
+  for (int64_t v = 0; v < e->vertices; v++) {
+    double motion[MOTIONS][AXES];
+    find_motions(e, rigid->of + rigid->body[v], v, motion);
+    for (int i = 0; i < n; i++)
+      for (int s = 0; s < motions && e->unknown[v * n + i] >= 0; s++)
+        x[e->unknown[v * n + i]] -= rigid->sum[(int64_t)rigid->body[v] * MOTIONS + s] *
+                                    motion[s][i];
+  }
 }

@@ -30,4 +30,8 @@ void dvi__rigid_clear(dvi__rigid *rigid);
 /* Give the share of rigid motions in a mode x [unknowns] with x.M x = 1, 0 to 1. */
 double dvi__rigid_share(const dvi__rigid *rigid, const double *x);
 
+/* Take the rigid motions out of x [unknowns]. The rest is orthogonal to them in the scalar product
+ * of the mass. */
+void dvi__rigid_remove(const dvi__rigid *rigid, double *x);
+
 #endif

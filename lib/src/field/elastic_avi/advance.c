@@ -13,7 +13,21 @@ enum { STEPS_BETWEEN_CHECKS = 64 };
 
 static const double roundings = 4 * DBL_EPSILON;
 
-/* Stand before the first event that fails up to a limit. */
+/* Say what stopped a run. */
+static dvi_status refuse(const dvi__solid_avi *avi, const dvi__solid_halt *halt)
+{
+  const int n = avi->n, *corner = avi->corner + halt->cell * (n + 1);
+  for (int a = 0; a <= n; a++) {
+    double u[DVI__SOLID_AXES], rate[DVI__SOLID_AXES];
+    if (!(avi->node_kind[corner[a]] & DVI__NODE_DRIVEN)) continue;
+    const int returned = dvi__solid_given(avi->solid, corner[a], halt->t, u, rate);
+    if (returned != 0) return dvi__solid_refuse_given(avi->solid, corner[a], returned);
+  }
+  (void)dvi__solid_refuse(avi->solid, avi->name[halt->cell], halt->returned);
+  return halt->returned > 0 ? DVI_SINGULAR : DVI_CALLBACK_FAILED;
+}
+
+/* Stand before the first event that fails up to a limit, found by a single thread. */
 static dvi_status stand_before(dvi__solid_avi *avi, double limit)
 {
   const double before = avi->clock.t;
@@ -21,17 +35,17 @@ static dvi_status stand_before(dvi__solid_avi *avi, double limit)
   const dvi__solid_halt halt = dvi__solid_run(avi, limit);
   dvi__solid_take_back(avi);
   (void)dvi__solid_run(avi, nextafter(halt.t, -INFINITY));
+  dvi__solid_order(avi);
   avi->clock.t = fmin(fmax(avi->clock.t, before), limit);
-  (void)dvi__solid_refuse(avi->solid, avi->name[halt.cell], halt.returned);
-  return dvi__fail_in(halt.returned > 0 ? DVI_SINGULAR : DVI_CALLBACK_FAILED, "%s: at t = %g",
-                      avi->method, halt.t);
+  return dvi__fail_in(refuse(avi, &halt), "%s: at t = %g", avi->method, halt.t);
 }
 
 static dvi_status run(dvi__solid_avi *avi, double t)
 {
   const double limit = t + roundings * fmax(fabs(t), fabs(avi->clock.t0)), before = avi->clock.t;
   avi->view->t = (double)NAN; /* events of the present time may be left after a failure */
-  const dvi__solid_halt halt = dvi__solid_run(avi, limit);
+  const dvi__solid_halt halt = avi->members != NULL ? dvi__solid_run_members(avi, limit)
+                                                    : dvi__solid_run(avi, limit);
   if (halt.returned != 0) {
     avi->clock.t = before;
     return stand_before(avi, limit);

@@ -5,6 +5,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "field/elastic_avi/layout.h"
+#include "field/elastic_avi/members.h"
 
 static void destroy_view(dvi__solid_view *view)
 {
@@ -18,11 +19,13 @@ void dvi__solid_avi_destroy(dvi__solid_avi **avi)
 {
   dvi__solid_avi *s = *avi;
   if (s == NULL) return;
-  void *const memory[] = {s->name,    s->corner, s->node_kind, s->cell_kind, s->step,      s->decay,
-                          s->viscous, s->block,  s->kept,      s->cell_of,   s->cell_start};
+  void *const memory[] = {s->name,  s->corner, s->node_kind, s->cell_kind,
+                          s->step,  s->decay,  s->viscous,   s->meeting,
+                          s->block, s->kept,   s->cell_of,   s->cell_start};
   for (size_t i = 0; i < sizeof memory / sizeof *memory; i++) dvi__release(memory[i]);
   destroy_view(s->view);
   dvi__calendar_destroy(&s->calendar);
+  dvi__solid_members_destroy(&s->members);
   dvi__release(s);
   *avi = NULL;
 }
@@ -44,11 +47,12 @@ static dvi_status allocate(dvi__solid_avi *s)
   s->cell_kind = DVI_NEW(uint8_t, s->cells);
   s->step = DVI_NEW(double, s->cells);
   s->viscous = DVI_NEW(int, s->cells);
+  s->meeting = DVI_NEW(int, s->cells);
   s->cell_start = DVI_NEW(int64_t, s->vertices + 1);
   s->cell_of = DVI_NEW(int, s->cells *width);
   s->view = DVI_NEW(dvi__solid_view, 1);
   if (!s->name || !s->corner || !s->node_kind || !s->cell_kind || !s->step || !s->viscous ||
-      !s->cell_start || !s->cell_of || !s->view)
+      !s->meeting || !s->cell_start || !s->cell_of || !s->view)
     return no_memory(s);
   s->view->u = DVI_NEW(double, numbers);
   s->view->rate = DVI_NEW(double, numbers);
@@ -101,6 +105,7 @@ dvi_status dvi__solid_avi_create(const dvi_elastic *solid, const dvi__solid_requ
   dvi_status status = allocate(s);
   if (status == DVI_OK) status = dvi__solid_lay_out(&plan, s);
   if (status == DVI_OK && s->is_free) status = make_calendar(s);
+  if (status == DVI_OK && s->threads > 1) status = dvi__solid_members_create(s);
   dvi__solid_plan_clear(&plan);
   if (status == DVI_OK)
     *avi = s;

@@ -46,8 +46,21 @@ enum {
 enum {
   DVI__CELL_GUARDED = 1, /* one of its nodes does not fly freely */
   DVI__CELL_LOADED = 2,
-  DVI__CELL_VISCOUS = 4
+  DVI__CELL_VISCOUS = 4,
+  DVI__CELL_MEETS = 8 /* one of its nodes meets obstacles */
 };
+
+/* A node beside obstacles. */
+typedef struct dvi__solid_touch {
+  int64_t hits;
+  int32_t rests;    /* 1 + the obstacle on which it rests, or 0 */
+  int32_t is_stuck; /* friction holds it there */
+} dvi__solid_touch;
+
+/* The last event of a cell: its displacements, velocities after it, and forces [(n+1)*n]. */
+typedef struct dvi__solid_push {
+  double t, u[DVI__SOLID_NUMBERS], v[DVI__SOLID_NUMBERS], f[DVI__SOLID_NUMBERS];
+} dvi__solid_push;
 
 /* The clock of a run. */
 typedef struct dvi__solid_clock {
@@ -59,11 +72,12 @@ typedef struct dvi__solid_clock {
 
 /* The numbers that change, in one block. Cells have their own numbers. */
 typedef struct dvi__solid_state {
-  dvi__solid_node *node; /* [vertices] */
-  int64_t *count;        /* [cells] of free steps: events so far */
-  double *worked;        /* [cells] sizes of works of loads and of driven nodes. Or empty */
-  double *stretch;       /* [viscous*12] displacements that the damping has answered so far */
-  int64_t *hits;         /* [vertices] with obstacles */
+  dvi__solid_node *node;   /* [vertices] */
+  int64_t *count;          /* [cells] of free steps: events so far */
+  double *worked;          /* [cells] sizes of works of loads and of driven nodes. Or empty */
+  double *stretch;         /* [viscous*12] displacements that the damping has answered so far */
+  dvi__solid_touch *touch; /* [vertices] with obstacles */
+  dvi__solid_push *push;   /* [pushes] */
 } dvi__solid_state;
 
 /* What an observation computed beside the state. */
@@ -71,7 +85,7 @@ typedef struct dvi__solid_view {
   double t;         /* NaN if nothing is valid */
   double *u, *rate; /* [vertices*n] */
   dvi_elastic_energies energies;
-  double growth;
+  double growth, hits;
 } dvi__solid_view;
 
 typedef struct dvi__solid_avi {
@@ -86,6 +100,8 @@ typedef struct dvi__solid_avi {
   double *decay; /* [vertices] rates, or empty */
   int *viscous;  /* [cells] place in `stretch`, or -1. NULL if there are none */
   int64_t viscous_count;
+  int *meeting; /* [cells] place in `push` of cells that meet obstacles */
+  int64_t pushes;
   int64_t *cell_start; /* [vertices+1] */
   int *cell_of;        /* own numbers of the cells of a vertex, ascending */
   int is_equal;        /* one step for all */
@@ -105,24 +121,49 @@ typedef struct dvi__solid_avi {
   dvi__solid_view *view;
 } dvi__solid_avi;
 
-/* Carry a node that has a kind to the time t. Returns 0, or as dvi__solid_given. */
+/* Carry a node that has a kind to the time t. `touch` is NULL without obstacles. Returns 0, or as
+ * dvi__solid_given. */
 int dvi__solid_guide(const dvi__solid_avi *avi, int vertex, double t, dvi__solid_node *node,
-                     int64_t *hits);
+                     dvi__solid_touch *touch);
 
 /* Carry a node to the time t. Returns as dvi__solid_guide. */
 static inline int dvi__solid_fly(const dvi__solid_avi *avi, int vertex, double t,
-                                 dvi__solid_node *node, int64_t *hits)
+                                 dvi__solid_node *node, dvi__solid_touch *touch)
 {
-  if (avi->node_kind[vertex] != 0) return dvi__solid_guide(avi, vertex, t, node, hits);
+  if (avi->node_kind[vertex] != 0) return dvi__solid_guide(avi, vertex, t, node, touch);
   const double span = t - node->tau;
   for (int i = 0; i < DVI__SOLID_AXES; i++) node->u[i] += node->v[i] * span;
   node->tau = t;
   return 0;
 }
 
-/* Fly along v for the length s, and bounce from obstacles. */
-void dvi__solid_bounce(const dvi__solid_avi *avi, int vertex, double length, dvi__solid_node *node,
-                       int64_t *hits);
+/* The kinetic energy of what is given at a driven node, 0 at others. */
+static inline double dvi__solid_driven_energy(const dvi__solid_avi *avi, int64_t vertex,
+                                              const dvi__solid_node *node)
+{
+  const int kind = avi->node_kind[vertex];
+  double square = 0;
+  for (int i = 0; i < avi->n && (kind & DVI__NODE_DRIVEN); i++)
+    if (kind & 1 << i) square += node->v[i] * node->v[i];
+  return 0.5 * square / node->inverse;
+}
+
+/* Fly among obstacles from the time t for the length s, in units of v. */
+void dvi__solid_bounce(const dvi__solid_avi *avi, int vertex, double t, double length,
+                       dvi__solid_node *node, dvi__solid_touch *touch);
+
+/* Take from a velocity [n] of a node what the obstacle takes on which it rests. */
+void dvi__solid_rest(const dvi__solid_avi *avi, int vertex, const dvi__solid_node *node,
+                     const dvi__solid_touch *touch, double *rate);
+
+/* Keep an event of a cell at displacements u [(n+1)*n], with forces f, for the hits of its nodes. */
+void dvi__solid_note(dvi__solid_avi *avi, int64_t c, double t, const double *u, const double *f);
+
+/* The touch of a node, or NULL without obstacles. */
+static inline dvi__solid_touch *dvi__solid_touch_of(const dvi__solid_avi *avi, int64_t vertex)
+{
+  return avi->state.touch != NULL ? avi->state.touch + vertex : NULL;
+}
 
 /* Give the forces of a cell's stored energy and its loads at displacements u [(n+1)*n], and those
  * of the loads alone, 0 without. Returns as dvi__solid_force. */

@@ -23,16 +23,16 @@
 /* ---- flights ---- */
 
 int dvi__solid_guide(const dvi__solid_avi *avi, int vertex, double t, dvi__solid_node *node,
-                     int64_t *hits)
+                     dvi__solid_touch *touch)
 {
   const int kind = avi->node_kind[vertex];
-  const double span = t - node->tau;
+  const double from = node->tau, span = t - from;
   if (!(span > 0)) return 0;
   const double z = kind & DVI__NODE_DECAYS ? avi->decay[vertex] * span : 0,
                length = span * dvi__decay_mean(z);
   node->tau = t;
   if (kind & DVI__NODE_MEETS)
-    dvi__solid_bounce(avi, vertex, length, node, hits);
+    dvi__solid_bounce(avi, vertex, from, length, node, touch);
   else
     for (int i = 0; i < DVI__SOLID_AXES; i++) node->u[i] += node->v[i] * length;
   if (kind & DVI__NODE_DECAYS)
@@ -129,9 +129,12 @@ static int act_guarded(dvi__solid_avi *avi, int64_t c, double t)
       load[DVI__SOLID_NUMBERS];
   for (int a = 0; a <= n; a++) {
     dvi__solid_node *node = avi->state.node + corner[a];
-    int64_t *hits = avi->state.hits != NULL ? avi->state.hits + corner[a] : NULL;
-    const int returned = dvi__solid_fly(avi, corner[a], t, node, hits);
+    const double before = dvi__solid_driven_energy(avi, corner[a], node);
+    const int returned = dvi__solid_fly(avi, corner[a], t, node,
+                                        dvi__solid_touch_of(avi, corner[a]));
     if (returned != 0) return returned;
+    if (avi->state.worked != NULL)
+      avi->state.worked[c] += fabs(dvi__solid_driven_energy(avi, corner[a], node) - before);
     for (int i = 0; i < n; i++) {
       u[a * n + i] = node->u[i];
       v[a * n + i] = node->v[i];
@@ -147,6 +150,7 @@ static int act_guarded(dvi__solid_avi *avi, int64_t c, double t)
     for (int i = 0; i < n; i++)
       if (!(avi->node_kind[corner[a]] & 1 << i)) node->v[i] += kick * f[a * n + i];
   }
+  dvi__solid_note(avi, c, t, u, f);
   return 0;
 }
 

@@ -99,13 +99,12 @@ static dvi_status begin(const laws *s)
 
 /* ---- what is measured ---- */
 
-/* Give the component k of m u', or from k = n on that of x × m u' about the origin, and the sum of
+/* Give the component k of m u', or from k = n on that of x cross m u' about the origin, and the sum of
  * the sizes of its terms. */
 static double momentum(const laws *s, int k, double *size)
 {
   const dvi_elastic *e = s->solid;
-  const int n = s->n, turn = k - n, i = n == 3 ? (turn + 1) % 3 : 0,
-            j = n == 3 ? (turn + 2) % 3 : 1;
+  const int n = s->n, turn = k - n, i = n == 3 ? (k + 1) % 3 : 0, j = n == 3 ? (k + 2) % 3 : 1;
   double sum = 0;
   *size = 0;
   for (int64_t v = 0; v < e->vertices; v++) {

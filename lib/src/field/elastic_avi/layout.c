@@ -92,8 +92,12 @@ static void find_cell_kinds(dvi__solid_avi *avi)
   for (int64_t c = 0; c < avi->cells; c++) {
     const int64_t cell = avi->name[c];
     int kind = 0;
-    for (int a = 0; a <= avi->n; a++)
-      if (avi->node_kind[avi->corner[c * (avi->n + 1) + a]] != 0) kind |= DVI__CELL_GUARDED;
+    for (int a = 0; a <= avi->n; a++) {
+      const int of_node = avi->node_kind[avi->corner[c * (avi->n + 1) + a]];
+      if (of_node != 0) kind |= DVI__CELL_GUARDED;
+      if (of_node & DVI__NODE_MEETS) kind |= DVI__CELL_MEETS;
+    }
+    if (kind & DVI__CELL_MEETS) avi->meeting[c] = (int)avi->pushes++;
     if (e->load_start != NULL && e->load_start[cell + 1] > e->load_start[cell] && !avi->is_linear)
       kind |= DVI__CELL_LOADED;
     if (e->materials[e->material[cell]].beta > 0) {
@@ -122,7 +126,8 @@ static dvi_status lay_out_state(dvi__solid_avi *avi)
       {(void **)&s->count, avi->is_free ? cells * sizeof *s->count : 0},
       {(void **)&s->worked, is_worked ? cells * sizeof *s->worked : 0},
       {(void **)&s->stretch, (size_t)avi->viscous_count * DVI__SOLID_NUMBERS * sizeof *s->stretch},
-      {(void **)&s->hits, meets ? vertices * sizeof *s->hits : 0}};
+      {(void **)&s->touch, meets ? vertices * sizeof *s->touch : 0},
+      {(void **)&s->push, (size_t)avi->pushes * sizeof *s->push}};
   avi->size = 0;
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) avi->size += parts[i].size;
   avi->block = DVI_NEW(char, avi->size);

@@ -142,14 +142,15 @@ static dvi_status observe(const void *self, int i, double *value)
 {
   const dvi__solid_avi *avi = self;
   const int what = what_of(avi, i);
-  *value = 0;
-  for (int64_t v = 0; v < avi->vertices && what == HITS; v++) *value += (double)avi->state.hits[v];
-  if (what == HITS) return DVI_OK;
   DVI_TRY(dvi__solid_avi_look(avi));
   const dvi_elastic_energies *e = &avi->view->energies;
-  const double energies[] = {e->kinetic + e->stored + e->load, e->kinetic, e->stored, e->load,
-                             avi->view->growth};
-  *value = what < HITS ? energies[what] : momentum(avi, what - MOMENTA);
+  const double energies[] = {e->kinetic + e->stored + e->load,
+                             e->kinetic,
+                             e->stored,
+                             e->load,
+                             avi->view->growth,
+                             avi->view->hits};
+  *value = what <= HITS ? energies[what] : momentum(avi, what - MOMENTA);
   return DVI_OK;
 }
 

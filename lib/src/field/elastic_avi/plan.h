@@ -45,7 +45,8 @@ dvi_status dvi__solid_avi_advance(dvi__solid_avi *avi, double t);
 dvi_status dvi__solid_avi_sample(const dvi__solid_avi *avi, int64_t count, const int *component,
                                  double *u, double *rate);
 
-/* Make the whole view at the march's time. */
+/* Make u and u' of the view at the march's time, or the whole view. */
+dvi_status dvi__solid_avi_see(const dvi__solid_avi *avi);
 dvi_status dvi__solid_avi_look(const dvi__solid_avi *avi);
 
 /* Put the section "elastic", and take it back. */

@@ -3,7 +3,7 @@
  * products t_0 + j h_K, never running sums. */
 #include <math.h>
 
-#include "field/elastic_avi/engine.h"
+#include "field/elastic_avi/members.h"
 
 int dvi__solid_class_of_slot(const dvi__solid_avi *avi, int64_t slot)
 {
@@ -49,10 +49,25 @@ dvi__solid_halt dvi__solid_run(dvi__solid_avi *avi, double limit)
   return (avi->is_free ? run_calendar : run_slots)(avi, limit);
 }
 
+/* The time of the next event of the i-th cell of a list, or for NULL of all. */
+static double next_time(const dvi__solid_avi *avi, const int *cell, int64_t i)
+{
+  const int64_t c = cell != NULL ? cell[i] : i;
+  return dvi__solid_event_time(avi, c, avi->state.count[c] + 1);
+}
+
+void dvi__solid_order_some(const dvi__solid_avi *avi, int64_t count, const int *cell,
+                           dvi__calendar *calendar)
+{
+  double first = INFINITY;
+  for (int64_t i = 0; i < count; i++) first = fmin(first, next_time(avi, cell, i));
+  dvi__calendar_clear(calendar, first);
+  for (int64_t i = 0; i < count; i++) dvi__calendar_put(calendar, next_time(avi, cell, i), i);
+}
+
 void dvi__solid_order(dvi__solid_avi *avi)
 {
   if (!avi->is_free) return;
-  dvi__calendar_clear(avi->calendar, avi->clock.t0);
-  for (int64_t c = 0; c < avi->active; c++)
-    dvi__calendar_put(avi->calendar, dvi__solid_event_time(avi, c, avi->state.count[c] + 1), c);
+  dvi__solid_order_some(avi, avi->active, NULL, avi->calendar);
+  if (avi->members != NULL) dvi__solid_members_order(avi);
 }

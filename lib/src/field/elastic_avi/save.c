@@ -28,9 +28,17 @@ static uint64_t hash_of(const dvi__solid_avi *avi)
   hash = dvi__hash(hash, cells * sizeof *avi->step, avi->step);
   for (int i = 0; i < e->material_count; i++) {
     const dvi__solid_material *m = e->materials + i;
-    const double law = (double)m->law,
-                 numbers[] = {law, m->lambda, m->mu, m->mooney, m->rho, m->alpha, m->beta};
+    const double *const number[] = {&m->lambda, &m->mu, &m->mooney, &m->rho, &m->alpha, &m->beta};
+    hash = dvi__hash(hash, sizeof m->law, &m->law);
+    for (size_t k = 0; k < sizeof number / sizeof *number; k++)
+      hash = dvi__hash(hash, sizeof *number[k], number[k]);
+  }
+  for (int i = 0; i < e->obstacles; i++) {
+    const dvi_obstacle *o = e->obstacle + i;
+    const double kind = (double)o->kind, numbers[] = {kind, o->radius, o->restitution, o->friction};
     hash = dvi__hash(hash, sizeof numbers, numbers);
+    hash = dvi__hash(hash, sizeof o->point, o->point);
+    hash = dvi__hash(hash, sizeof o->normal, o->normal);
   }
   return hash;
 }
@@ -68,7 +76,7 @@ dvi_status dvi__solid_avi_load(dvi__solid_avi *avi, const dvi__sections *section
       section.size != sizeof other + avi->size)
     return dvi__fail(DVI_BAD_FILE,
                      "%s: it is of a solid of %lld vertices and %lld cells with other materials, "
-                     "conditions or steps than this one of %lld and %lld",
+                     "conditions, obstacles or steps than this one of %lld and %lld",
                      sections->name, (long long)other.vertices, (long long)other.cells,
                      (long long)own.vertices, (long long)own.cells);
   memcpy(avi->block, section.content + sizeof other, avi->size);

@@ -4,8 +4,12 @@
 #include <string.h>
 
 #include "core/status.h"
+#include "field/elastic/cell.h"
+#include "field/elastic/contacts.h"
 #include "field/elastic_avi/plan.h"
 #include "field/step/decay.h"
+
+static const double roundings = 1e-12;
 
 void dvi__solid_keep(dvi__solid_avi *avi)
 {
@@ -19,6 +23,28 @@ void dvi__solid_take_back(dvi__solid_avi *avi)
   avi->clock = avi->kept_clock;
   avi->view->t = (double)NAN;
   dvi__solid_order(avi);
+}
+
+/* Refuse a node that is deeper in an obstacle than roundings are. */
+static dvi_status check_place(const dvi__solid_avi *avi, int64_t vertex, const double *u)
+{
+  const dvi_elastic *e = avi->solid;
+  const int n = avi->n;
+  for (int k = 0; k < e->obstacles; k++) {
+    const dvi_obstacle *o = e->obstacle + k;
+    double x[DVI__SOLID_AXES], normal[DVI__SOLID_AXES], size = o->radius;
+    for (int i = 0; i < n; i++) {
+      x[i] = e->point[vertex * n + i] + u[i];
+      size += fabs(x[i]) + fabs(o->point[i]);
+    }
+    const double gap = dvi__solid_gap(o, n, x, normal);
+    if (gap >= -roundings * size) continue;
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "%s: at the start %s is inside of the obstacle \"%s\", %g deep: nodes start "
+                     "outside, or on the surface",
+                     avi->method, dvi__name_cell(e->mesh, 0, vertex).text, o->name, -gap);
+  }
+  return DVI_OK;
 }
 
 /* Set the view to the start, with what is given, and find its energy. */
@@ -39,6 +65,7 @@ static dvi_status check(const dvi__solid_avi *avi, double t, const double *u, co
     const int returned = dvi__solid_given(avi->solid, v, t, view->u + v * avi->n,
                                           view->rate + v * avi->n);
     if (returned != 0) return dvi__solid_refuse_given(avi->solid, v, returned);
+    if (avi->node_kind[v] & DVI__NODE_MEETS) DVI_TRY(check_place(avi, v, view->u + v * avi->n));
   }
   DVI_TRY(dvi_elastic_energy(avi->solid, t, view->u, view->rate, NULL, &view->energies));
   if (isfinite(view->energies.kinetic + view->energies.stored + view->energies.load)) return DVI_OK;
@@ -86,6 +113,8 @@ static int kick_first(dvi__solid_avi *avi, int64_t c, double t)
       if (!(avi->node_kind[corner[a]] & 1 << i))
         node->v[i] += node->inverse * (part * f[a * n + i] + answer[a * n + i]);
   }
+  for (int k = 0; k < (n + 1) * n; k++) f[k] += 2 * answer[k] / avi->step[c];
+  dvi__solid_note(avi, c, t, u, f);
   return 0;
 }
 

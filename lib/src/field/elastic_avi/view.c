@@ -7,7 +7,7 @@
  *     v_a(t) = v_a + sum over K of f_K(u(t)) (t - t_K - h_K/2)/m_a,
  *
  * which is of order 2 at any t. A damping beta has answered w of event.c, and owes what u(t)
- * differs from it. Where alpha is not 0, what cells owe is that of field/step/decay.h. */
+ * differs from it. A node that rests on an obstacle has no velocity through it. Where alpha is not 0, what cells owe is that of field/step/decay.h. */
 #include <math.h>
 #include <string.h>
 
@@ -24,12 +24,21 @@ static double time_of_cell(const dvi__solid_avi *avi, int64_t c)
   return dvi__solid_slot_time(avi, avi->clock.slot >> j << j);
 }
 
-/* Give a node at the march's time. */
+/* Give a node at the march's time, and how it touches obstacles. */
+static dvi_status see_touch(const dvi__solid_avi *avi, int vertex, dvi__solid_node *node,
+                            dvi__solid_touch *touch)
+{
+  const dvi__solid_touch *own = dvi__solid_touch_of(avi, vertex);
+  *node = avi->state.node[vertex];
+  *touch = own != NULL ? *own : (dvi__solid_touch){0};
+  const int returned = dvi__solid_fly(avi, vertex, avi->clock.t, node, touch);
+  return returned == 0 ? DVI_OK : dvi__solid_refuse_given(avi->solid, vertex, returned);
+}
+
 static dvi_status see_node(const dvi__solid_avi *avi, int vertex, dvi__solid_node *node)
 {
-  *node = avi->state.node[vertex];
-  const int returned = dvi__solid_fly(avi, vertex, avi->clock.t, node, NULL);
-  return returned == 0 ? DVI_OK : dvi__solid_refuse_given(avi->solid, vertex, returned);
+  dvi__solid_touch touch;
+  return see_touch(avi, vertex, node, &touch);
 }
 
 /* What a cell owes to its nodes, over their masses [(n+1)*n]. */
@@ -62,9 +71,10 @@ static dvi_status see_debt(const dvi__solid_avi *avi, int64_t c, const double *u
 static dvi_status see_rate(const dvi__solid_avi *avi, int vertex, double *rate)
 {
   const int n = avi->n;
-  dvi__solid_node node;
-  DVI_TRY(see_node(avi, vertex, &node));
-  for (int i = 0; i < n; i++) rate[i] = node.v[i];
+  dvi__solid_node node, own;
+  dvi__solid_touch touch;
+  DVI_TRY(see_touch(avi, vertex, &own, &touch));
+  for (int i = 0; i < n; i++) rate[i] = own.v[i];
   for (int64_t k = avi->cell_start[vertex]; k < avi->cell_start[vertex + 1]; k++) {
     const int64_t c = avi->cell_of[k];
     const int *corner = avi->corner + c * (n + 1);
@@ -77,6 +87,7 @@ static dvi_status see_rate(const dvi__solid_avi *avi, int vertex, double *rate)
     for (int a = 0; a <= n; a++)
       for (int i = 0; i < n && corner[a] == vertex; i++) rate[i] += debt[a * n + i];
   }
+  dvi__solid_rest(avi, vertex, &own, &touch, rate);
   return DVI_OK;
 }
 
@@ -84,9 +95,12 @@ static dvi_status see_rate(const dvi__solid_avi *avi, int vertex, double *rate)
 
 static dvi_status see_nodes(const dvi__solid_avi *avi)
 {
+  avi->view->hits = 0;
   for (int64_t v = 0; v < avi->vertices; v++) {
     dvi__solid_node node;
-    DVI_TRY(see_node(avi, (int)v, &node));
+    dvi__solid_touch touch;
+    DVI_TRY(see_touch(avi, (int)v, &node, &touch));
+    avi->view->hits += (double)touch.hits;
     for (int i = 0; i < avi->n; i++) {
       avi->view->u[v * avi->n + i] = node.u[i];
       avi->view->rate[v * avi->n + i] = node.v[i];
@@ -108,21 +122,47 @@ static dvi_status see_debts(const dvi__solid_avi *avi)
   return DVI_OK;
 }
 
+static dvi_status see_rests(const dvi__solid_avi *avi)
+{
+  for (int64_t v = 0; v < avi->vertices; v++) {
+    dvi__solid_node node;
+    dvi__solid_touch touch;
+    if (!(avi->node_kind[v] & DVI__NODE_MEETS)) continue;
+    DVI_TRY(see_touch(avi, (int)v, &node, &touch));
+    dvi__solid_rest(avi, (int)v, &node, &touch, avi->view->rate + v * avi->n);
+  }
+  return DVI_OK;
+}
+
+/* The energy of the start, and the sizes of all that loads and driven nodes worked. */
 static double reference_energy(const dvi__solid_avi *avi)
 {
+  const int n = avi->n;
   double sum = avi->clock.start_energy;
   for (int64_t c = 0; c < avi->active && avi->state.worked != NULL; c++)
     sum += avi->state.worked[c];
+  for (int64_t v = 0; v < avi->vertices && avi->solid->is_driven; v++) {
+    dvi__solid_node now = avi->state.node[v];
+    const double before = dvi__solid_driven_energy(avi, v, &now);
+    for (int i = 0; i < n; i++) now.v[i] = avi->view->rate[v * n + i];
+    sum += fabs(dvi__solid_driven_energy(avi, v, &now) - before);
+  }
   return sum;
+}
+
+dvi_status dvi__solid_avi_see(const dvi__solid_avi *avi)
+{
+  avi->view->t = (double)NAN;
+  DVI_TRY(see_nodes(avi));
+  DVI_TRY(see_debts(avi));
+  return see_rests(avi);
 }
 
 dvi_status dvi__solid_avi_look(const dvi__solid_avi *avi)
 {
   dvi__solid_view *view = avi->view;
   if (view->t == avi->clock.t) return DVI_OK;
-  view->t = (double)NAN;
-  DVI_TRY(see_nodes(avi));
-  DVI_TRY(see_debts(avi));
+  DVI_TRY(dvi__solid_avi_see(avi));
   DVI_TRY(dvi_elastic_energy(avi->solid, avi->clock.t, view->u, view->rate, NULL, &view->energies));
   const double reference = reference_energy(avi);
   view->growth = reference > 0 ? (view->energies.kinetic + view->energies.stored) / reference : 1;

@@ -43,21 +43,6 @@ static dvi_status no_memory(const modal *m)
 
 /* ---- modes ---- */
 
-static void fill_in(const modal *m)
-{
-  const dvi__flow *flow = m->flow;
-  const size_t n = (size_t)m->n;
-  for (size_t e = 0; e < n; e++) m->M[e * n + e] = flow->M1[e];
-  for (int64_t f = 0; f < flow->faces; f++)
-    for (int a = 0; a < flow->width; a++)
-      for (int b = 0; b < flow->width; b++) {
-        const int i = flow->facet[f * flow->width + a], j = flow->facet[f * flow->width + b];
-        const size_t row = (size_t)dvi__flow_number(i), column = (size_t)dvi__flow_number(j);
-        if (row < n && column < n)
-          m->K[column * n + row] += (i < 0) == (j < 0) ? flow->M2[f] : -flow->M2[f];
-      }
-}
-
 /* The static modes come first. */
 static dvi_status find_modes(modal *m)
 {
@@ -67,7 +52,8 @@ static dvi_status find_modes(modal *m)
   m->X = DVI_NEW(double, n *n);
   m->lambda = DVI_NEW(double, n);
   if (!m->K || !m->M || !m->X || !m->lambda) return no_memory(m);
-  fill_in(m);
+  for (size_t e = 0; e < n; e++) m->M[e * n + e] = m->flow->M1[e];
+  m->flow->strain->stiffness(m->flow, m->K);
   DVI_TRY(dvi__eigen_symmetric(m->n, m->K, m->M, m->lambda, m->X));
   while (m->statics < m->n && !(m->lambda[m->statics] > static_below * m->lambda[m->n - 1]))
     m->statics++;

@@ -6,7 +6,8 @@
  * vector y belongs to an eigenvalue of P up to h_{m+1,m} |y_m| (Saad 2011, prop. 6.8). The start
  * has been carried through some periods, in which the fastest growing fields come forth. B stands
  * for A, whose static part has no energy, and would be all that is left where dampings take the
- * energy away. */
+ * energy away. Solids have their displacements without rigid motions in place of B, and their stiffness in
+ * that of M2. */
 #include <math.h>
 #include <string.h>
 
@@ -22,8 +23,8 @@ static const double settled = 0.1;
 
 typedef struct arnoldi {
   const dvi__flow *flow;
-  int64_t faces, n;                     /* with events, and all numbers */
-  double *q;                            /* [DIRECTIONS+1][n] B and D of the directions */
+  int64_t n;                            /* strains and D */
+  double *q;                            /* [DIRECTIONS+1][n] the directions */
   double *image;                        /* [n] M2 B and M1^-1 D of the new one */
   double h[DIRECTIONS][DIRECTIONS + 1]; /* by columns */
 } arnoldi;
@@ -40,25 +41,25 @@ static double dot(int64_t n, const double *x, const double *y)
   return sum;
 }
 
-/* Make M2 B and M1^-1 D of a direction. Returns its length. */
+/* Make the image of a direction. Returns its length. */
 static double weigh(const arnoldi *s, const double *q)
 {
   const dvi__flow *flow = s->flow;
-  for (int64_t f = 0; f < s->faces; f++) s->image[f] = flow->M2[f] * q[f];
-  for (int64_t e = 0; e < flow->n; e++) s->image[s->faces + e] = flow->inverse[e] * q[s->faces + e];
-  return sqrt(dot(s->n, q, s->image));
+  const int64_t strains = flow->strains;
+  flow->strain->weigh(flow, q, s->image);
+  for (int64_t e = 0; e < flow->n; e++) s->image[strains + e] = flow->inverse[e] * q[strains + e];
+  const double square = dot(s->n, q, s->image);
+  return square < 0 ? 0 : sqrt(square); /* squares of rigid motions are roundings */
 }
 
-/* B = bias + dA, from A = 0 on. */
 static dvi_status carry(const arnoldi *s, const double *from, double time, double *to)
 {
   const dvi__flow *flow = s->flow;
-  memset(flow->A, 0, (size_t)flow->n * sizeof(double));
-  memcpy(flow->bias, from, (size_t)s->faces * sizeof(double));
-  memcpy(flow->D, from + s->faces, (size_t)flow->n * sizeof(double));
+  flow->strain->put(flow, from);
+  memcpy(flow->D, from + flow->strains, (size_t)flow->n * sizeof(double));
   DVI_TRY(flow->carry(flow->of, time));
-  for (int64_t f = 0; f < s->faces; f++) to[f] = dvi__flow_field(flow, f);
-  memcpy(to + s->faces, flow->D, (size_t)flow->n * sizeof(double));
+  flow->strain->take(flow, to);
+  memcpy(to + flow->strains, flow->D, (size_t)flow->n * sizeof(double));
   return DVI_OK;
 }
 
@@ -105,9 +106,10 @@ static dvi_status iterate(arnoldi *s, double time, int *directions)
 static dvi_status begin(arnoldi *s, double time)
 {
   double *first = direction(s, 0);
-  dvi__scatter(s->flow);
-  for (int64_t f = 0; f < s->faces; f++) first[f] = dvi__flow_field(s->flow, f);
-  memcpy(first + s->faces, s->flow->D, (size_t)s->flow->n * sizeof(double));
+  const dvi__flow *flow = s->flow;
+  flow->strain->scatter(flow);
+  flow->strain->take(flow, first);
+  memcpy(first + flow->strains, flow->D, (size_t)flow->n * sizeof(double));
   for (int i = 0; i < PERIODS_BEFORE; i++) {
     DVI_TRY(carry(s, first, time, first));
     const double length = weigh(s, first);
@@ -153,15 +155,13 @@ dvi_status dvi__largest_multipliers(const dvi__flow *flow, double period, double
   arnoldi *s = DVI_NEW(arnoldi, 1);
   if (s == NULL) return dvi__fail(DVI_NO_MEMORY, "stability: no memory");
   s->flow = flow;
-  s->faces = flow->faces;
-  s->n = s->faces + flow->n;
+  s->n = flow->strains + flow->n;
   s->q = DVI_NEW(double, (DIRECTIONS + 1) * s->n);
   s->image = DVI_NEW(double, s->n);
   const dvi_status status = s->q != NULL && s->image != NULL
                                 ? search(s, period, span, report)
                                 : dvi__fail(DVI_NO_MEMORY, "stability: no memory for %d fields",
                                             DIRECTIONS);
-  memset(flow->bias, 0, (size_t)flow->faces * sizeof(double));
   dvi__release(s->q);
   dvi__release(s->image);
   dvi__release(s);

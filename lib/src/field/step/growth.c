@@ -3,7 +3,6 @@
 
 #include <math.h>
 #include <stdarg.h>
-#include <string.h>
 #include <dvi/number.h>
 
 #include "core/status.h"
@@ -20,48 +19,11 @@ dvi_status dvi__check_size(double size, double time)
                    time);
 }
 
-/* ---- fields to begin with ---- */
-
-static double random_between(uint64_t number)
+double dvi__random_between(uint64_t number)
 {
   uint32_t x[4] = {(uint32_t)number, (uint32_t)(number >> 32), 0, 0};
   dvi__philox(x, 1);
   return ldexp((double)x[0], -31) - 1;
-}
-
-/* Add d^T h to a vector of the edges. */
-static void add_transposed(const dvi__flow *flow, const double *h, double *x)
-{
-  for (int64_t i = 0; i < flow->faces * flow->width; i++) {
-    const int code = flow->facet[i], e = dvi__flow_number(code);
-    if (e < flow->n) x[e] += code < 0 ? -h[i / flow->width] : h[i / flow->width];
-  }
-}
-
-/* D = d^T h and A = M1^-1 d^T h with random h are M1-orthogonal to all fields of zero curl. */
-void dvi__scatter(const dvi__flow *flow)
-{
-  double *const parts[] = {flow->A, flow->D}, *h = flow->work;
-  double energy = 0;
-  for (int k = 0; k < 2; k++) {
-    memset(parts[k], 0, (size_t)flow->n * sizeof(double));
-    for (int64_t f = 0; f < flow->faces; f++)
-      h[f] = sqrt(flow->M2[f]) * random_between((uint64_t)(2 * f + k));
-    add_transposed(flow, h, parts[k]);
-  }
-  const double per_A = 0.5 * flow->bound;
-  for (int64_t e = 0; e < flow->n; e++) {
-    energy += flow->D[e] * flow->D[e] * flow->inverse[e];
-    flow->A[e] *= flow->inverse[e] * per_A;
-  }
-  for (int64_t f = 0; f < flow->faces; f++) {
-    const double B = dvi__flow_field(flow, f);
-    energy += B * B * flow->M2[f];
-  }
-  for (int64_t e = 0; e < flow->n; e++) {
-    flow->A[e] /= sqrt(energy);
-    flow->D[e] /= sqrt(energy);
-  }
 }
 
 /* ---- without a period ---- */
@@ -75,7 +37,7 @@ static dvi_status follow(const dvi__flow *flow, double span, dvi_stability *repo
 {
   double size[SEGMENTS + 1], energy;
   int last = 0;
-  dvi__scatter(flow);
+  flow->strain->scatter(flow);
   DVI_TRY(flow->energy(flow->of, 0, &energy));
   size[0] = 0.5 * log(energy);
   while (last < SEGMENTS && size[last] < large && size[last] > faint) {
@@ -102,6 +64,21 @@ void dvi__say_schedule(dvi_stability *report, const char *format, ...)
   va_end(arguments);
 }
 
+void dvi__say_steps(dvi_stability *report, double shortest, double longest, int classes)
+{
+  if (shortest == longest)
+    dvi__say_schedule(report, "equal steps of %.6g", shortest);
+  else if (classes > 0)
+    dvi__say_schedule(report, "%d classes of steps, powers of 2 from %.6g to %.6g", classes,
+                      shortest, longest);
+  else if (report->period > 0)
+    dvi__say_schedule(report, "free steps from %.6g to %.6g with the common period %.6g", shortest,
+                      longest, report->period);
+  else
+    dvi__say_schedule(report, "free steps from %.6g to %.6g without a common period", shortest,
+                      longest);
+}
+
 /* ---- the choice ---- */
 
 static double default_span(const dvi__schedule *s)
@@ -114,7 +91,7 @@ static double default_span(const dvi__schedule *s)
 dvi_status dvi__find_growth(const dvi__flow *flow, const dvi__schedule *schedule, double span,
                             dvi_stability *report)
 {
-  if (report->period > 0 && flow->n <= ALL_MODES_MOST)
+  if (report->period > 0 && flow->n <= ALL_MODES_MOST && !flow->has_memory)
     return dvi__all_multipliers(flow, report->period, report);
   if (!(span > 0)) span = default_span(schedule);
   if (report->period > 0) return dvi__largest_multipliers(flow, report->period, span, report);

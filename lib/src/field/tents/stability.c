@@ -39,7 +39,7 @@ static void begin(slabs *s)
     w->front.A[s->cell[i]] = s->A[i];
     w->front.row[s->cell[i]] = s->D[i];
   }
-  memcpy(w->base, s->bias, (size_t)s->flow.faces * sizeof *w->base);
+  memcpy(w->base, s->bias, (size_t)s->flow.strains * sizeof *w->base);
 }
 
 static dvi_status carry(void *of, double t)
@@ -146,7 +146,8 @@ static dvi_status prepare(slabs *s)
   write_codes(s);
   find_steps(s);
   s->flow = (dvi__flow){.n = s->flow.n,
-                        .faces = w->mesh->count[w->k + 1],
+                        .strains = w->mesh->count[w->k + 1],
+                        .strain = &dvi__strain_of_forms,
                         .width = w->k + 2,
                         .facet = s->facet,
                         .M1 = s->M1,
