@@ -273,9 +273,9 @@ static void print_graded(FILE *out, long cells)
     const char *method;
     double fraction;
     int threads;
-  } row[] = {{"verlet", 0.9, 1}, {"verlet", 0.9, 2},        {"verlet", 0.5, 1},
-             {"avi", 0.8, 1},    {"avi", 0.8, 2},           {"avi", 0.5, 1},
-             {"avi", 0.5, 2},    {"avi:classes=no", 0.5, 1}};
+  } row[] = {{"verlet", 0.9, 1}, {"verlet", 0.9, 2}, {"verlet", 0.5, 1},
+             {"avi", 0.9, 1},    {"avi", 0.8, 1},    {"avi", 0.8, 2},
+             {"avi", 0.5, 1},    {"avi", 0.5, 2},    {"avi:classes=no", 0.5, 1}};
   bar b = bar_of(cells);
   cost c, verlet = {0};
   const dvi_march_options finest = {.size = sizeof finest, .method = "verlet", .fraction = 0.25};
