@@ -120,7 +120,7 @@ START_TEST(the_solids_hit_their_obstacles_where_threads_share_them)
   dvi__solid_avi *avi = started(solid, &request, 0, 1);
   int64_t hits = 0;
   advance(avi, 1.2);
-  for (int64_t v = 0; v < avi->vertices; v++) hits += avi->state.hits[v];
+  for (int64_t v = 0; v < avi->vertices; v++) hits += avi->state.touch[v].hits;
   ck_assert_int_gt(hits, 10);
   dvi__solid_avi_destroy(&avi);
   dvi_elastic_destroy(&solid);
