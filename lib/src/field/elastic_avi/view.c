@@ -190,7 +190,7 @@ dvi_status dvi__solid_avi_sample(const dvi__solid_avi *avi, int64_t count, const
     } else if (u != NULL) {
       DVI_TRY(see_node(avi, (int)(at / n), &node));
       u[k] = node.u[at % n];
-    } else {
+    } else if (rate != NULL) {
       DVI_TRY(see_rate(avi, (int)(at / n), rates));
       rate[k] = rates[at % n];
     }
