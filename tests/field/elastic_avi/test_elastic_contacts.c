@@ -199,7 +199,7 @@ static dvi_elastic *falling(double restitution, double friction, double height, 
 static dvi_march *thrown(const dvi_elastic *solid, const char *method, double fraction, double vx,
                          double vy)
 {
-  double rate[NUMBERS_MOST];
+  double rate[NUMBERS_MOST] = {0};
   dvi_march *march = march_of(solid, method, fraction);
   for (int64_t i = 0; i < dvi_march_size(march, DVI_FORM_A); i++) rate[i] = i % 2 ? vy : vx;
   begin(march, NULL, rate);
@@ -271,7 +271,7 @@ START_TEST(a_damped_block_comes_to_rest)
 {
   double force[] = {0, -g_down};
   const int is_free = _i / 3 % METHODS == 1;
-  dvi_elastic *solid = falling(restitutions[_i % 3], _i / 9 * 0.3, 0.125, 0.5, force);
+  dvi_elastic *solid = falling(restitutions[_i % 3], _i < 9 ? 0 : 0.3, 0.125, 0.5, force);
   dvi_march *march = thrown(solid, methods[_i / 3 % METHODS], 0.4, 0, 0);
   double energy = observed(march, "energy");
   for (int k = 1; k <= 80; k++) {
@@ -412,7 +412,7 @@ END_TEST
 
 START_TEST(a_block_stays_in_a_cave)
 {
-  double u[NUMBERS_MOST], rate[NUMBERS_MOST];
+  double u[NUMBERS_MOST], rate[NUMBERS_MOST] = {0};
   const dvi_obstacle cave = {.name = "cave",
                              .kind = DVI_OBSTACLE_HOLLOW,
                              .point = {0.5, 0.5, 0.5},
