@@ -226,7 +226,8 @@ dvi_status dvi_elastic_system_terms(dvi_elastic *elastic, dvi_system_terms *term
  *  Observables are "energy", "kinetic", "stored", "load", "momentum_x" .., "angular_x" .. (in a
  *  plane "angular") about the origin, "growth", and with obstacles "hits".
  *
- *  dvi_march_advance returns DVI_SINGULAR at a cell that is inverted, where its law is not defined.
+ *  dvi_march_start returns DVI_BAD_ARGUMENT for a node inside of an obstacle, and
+ *  dvi_march_advance DVI_SINGULAR at a cell that is inverted, where its law is not defined.
  *  The march stands at the last good time then.
  *
  *  @param options  as for fields (dvi/march.h). NULL for the defaults, and for avi

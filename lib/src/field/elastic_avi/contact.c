@@ -11,10 +11,9 @@
  * has a mean, by which hits would gain energy. Nodes of a cell are taken to fly on from its last
  * event, so that a hit needs nothing that other cells change.
  *
- * The part of w along the outer normal N changes from -w_N to e w_N, and friction takes at most
- * mu (1 + e) w_N along the surface (Fetecau, Marsden, Ortiz and West 2003, with Coulomb's
- * friction). The node flies on with w - d. Components that are given stay as they are: N is
- * replaced by its free part.
+ * The part of w along the outer normal N changes from -w_N to e w_N, and Coulomb's friction takes
+ * at most mu (1 + e) w_N along the surface (Fetecau, Marsden, Ortiz and West 2003). The node flies
+ * on with w - d. Components that are given stay as they are: N is replaced by its free part.
  *
  * With S = sum f_K/m, the surface presses with p = -S.N on a node that lies on it, and with |v|^2/R
  * more inside of a ball and less outside. A node rests if p >= 0 and it would rise for less than

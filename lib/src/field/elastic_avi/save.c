@@ -15,6 +15,12 @@ typedef struct saved {
 } saved;
 
 /* Of places, masses, cells, steps and materials. Callbacks cannot be told apart. */
+static uint64_t hash_numbers(uint64_t hash, int count, const double *const *number)
+{
+  for (int k = 0; k < count; k++) hash = dvi__hash(hash, sizeof *number[k], number[k]);
+  return hash;
+}
+
 static uint64_t hash_of(const dvi__solid_avi *avi)
 {
   const dvi_elastic *e = avi->solid;
@@ -28,17 +34,18 @@ static uint64_t hash_of(const dvi__solid_avi *avi)
   hash = dvi__hash(hash, cells * sizeof *avi->step, avi->step);
   for (int i = 0; i < e->material_count; i++) {
     const dvi__solid_material *m = e->materials + i;
-    const double *const number[] = {&m->lambda, &m->mu, &m->mooney, &m->rho, &m->alpha, &m->beta};
     hash = dvi__hash(hash, sizeof m->law, &m->law);
-    for (size_t k = 0; k < sizeof number / sizeof *number; k++)
-      hash = dvi__hash(hash, sizeof *number[k], number[k]);
+    hash = hash_numbers(
+        hash, 6,
+        (const double *const[]){&m->lambda, &m->mu, &m->mooney, &m->rho, &m->alpha, &m->beta});
   }
   for (int i = 0; i < e->obstacles; i++) {
     const dvi_obstacle *o = e->obstacle + i;
-    const double kind = (double)o->kind, numbers[] = {kind, o->radius, o->restitution, o->friction};
-    hash = dvi__hash(hash, sizeof numbers, numbers);
+    hash = dvi__hash(hash, sizeof o->kind, &o->kind);
     hash = dvi__hash(hash, sizeof o->point, o->point);
     hash = dvi__hash(hash, sizeof o->normal, o->normal);
+    hash = hash_numbers(hash, 3,
+                        (const double *const[]){&o->radius, &o->restitution, &o->friction});
   }
   return hash;
 }

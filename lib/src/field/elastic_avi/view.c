@@ -184,13 +184,13 @@ dvi_status dvi__solid_avi_sample(const dvi__solid_avi *avi, int64_t count, const
     const int64_t at = component != NULL ? component[k] : k;
     double rates[DVI__SOLID_AXES];
     dvi__solid_node node;
-    if (is_seen) {
-      if (u != NULL) u[k] = avi->view->u[at];
-      if (rate != NULL) rate[k] = avi->view->rate[at];
-    } else if (u != NULL) {
+    if (is_seen && u != NULL) u[k] = avi->view->u[at];
+    if (is_seen && rate != NULL) rate[k] = avi->view->rate[at];
+    if (!is_seen && u != NULL) {
       DVI_TRY(see_node(avi, (int)(at / n), &node));
       u[k] = node.u[at % n];
-    } else {
+    }
+    if (!is_seen && rate != NULL) {
       DVI_TRY(see_rate(avi, (int)(at / n), rates));
       rate[k] = rates[at % n];
     }
