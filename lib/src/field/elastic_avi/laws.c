@@ -99,8 +99,8 @@ static dvi_status begin(const laws *s)
 
 /* ---- what is measured ---- */
 
-/* Give the component k of m u', or from k = n on that of x cross m u' about the origin, and the sum of
- * the sizes of its terms. */
+/* Give the component k of m u', or from k = n on that of x cross m u' about the origin, and the sum
+ * of the sizes of its terms. */
 static double momentum(const laws *s, int k, double *size)
 {
   const dvi_elastic *e = s->solid;

@@ -48,7 +48,7 @@ static void gather(const dvi__solid_avi *avi, int64_t c, double *u)
 static void add_displacements(const dvi__solid_avi *avi, double factor, double *numbers)
 {
   for (int64_t c = 0; c < avi->active; c++) {
-    double u[NUMBERS];
+    double u[NUMBERS] = {0};
     if (!(avi->cell_kind[c] & DVI__CELL_VISCOUS)) continue;
     gather(avi, c, u);
     for (int k = 0; k < (avi->n + 1) * avi->n; k++)

@@ -6,8 +6,8 @@
  * vector y belongs to an eigenvalue of P up to h_{m+1,m} |y_m| (Saad 2011, prop. 6.8). The start
  * has been carried through some periods, in which the fastest growing fields come forth. B stands
  * for A, whose static part has no energy, and would be all that is left where dampings take the
- * energy away. Solids have their displacements without rigid motions in place of B, and their stiffness in
- * that of M2. */
+ * energy away. Solids have their displacements without rigid motions in place of B, and their
+ * stiffness in that of M2. */
 #include <math.h>
 #include <string.h>
 

@@ -19,8 +19,8 @@ typedef struct dvi__flow_strain {
   void (*weigh)(const dvi__flow *flow, const double *strain, double *image);
 } dvi__flow_strain;
 
-/* A field with a diagonal star or mass, and the steps that carry it. Its free numbers, such as those
- * of k-cells, are 0 to n - 1. */
+/* A field with a diagonal star or mass, and the steps that carry it. Its free numbers, such as
+ * those of k-cells, are 0 to n - 1. */
 struct dvi__flow {
   int64_t n;
   const double *M1, *inverse; /* [n] M_k and its inverse */
