@@ -59,7 +59,11 @@ double dvi__rotation_defect(int n, const double *R)
 {
   double most = 0;
   for (int i = 0; i < n; i++)
-    for (int j = 0; j <= i; j++) most = fmax(most, fabs(dot(n, R + i * n, R + j * n) - (i == j)));
+    for (int j = 0; j <= i; j++) {
+      const double defect = fabs(dot(n, R + i * n, R + j * n) - (i == j));
+      if (!(defect <= most)) most = defect; /* NaN stays */
+      if (isnan(most)) return most;
+    }
   return most;
 }
 

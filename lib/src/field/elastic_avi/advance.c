@@ -27,14 +27,23 @@ static dvi_status refuse(const dvi__solid_avi *avi, const dvi__solid_halt *halt)
   return halt->returned > 0 ? DVI_SINGULAR : DVI_CALLBACK_FAILED;
 }
 
-/* Stand before the first event that fails up to a limit, found by a single thread. */
-static dvi_status stand_before(dvi__solid_avi *avi, double limit)
+/* Events up to this time happen in a run to t. */
+static double limit_of(const dvi__solid_avi *avi, double t)
+{
+  return t + roundings * fmax(fabs(t), fabs(avi->clock.t0));
+}
+
+/* Stand before the first event that fails up to a limit, found by a single thread. If none fails
+ * again, the callback that did has changed its mind, and the march stands where it was. */
+static dvi_status stand_before(dvi__solid_avi *avi, double limit, dvi__solid_halt first)
 {
   const double before = avi->clock.t;
   dvi__solid_take_back(avi);
-  const dvi__solid_halt halt = dvi__solid_run(avi, limit);
+  const dvi__solid_halt again = dvi__solid_run(avi, limit);
+  const int fails_again = again.returned != 0;
+  const dvi__solid_halt halt = fails_again ? again : first;
   dvi__solid_take_back(avi);
-  (void)dvi__solid_run(avi, nextafter(halt.t, -INFINITY));
+  (void)dvi__solid_run(avi, fails_again ? nextafter(halt.t, -INFINITY) : limit_of(avi, before));
   dvi__solid_order(avi);
   avi->clock.t = fmin(fmax(avi->clock.t, before), limit);
   return dvi__fail_in(refuse(avi, &halt), "%s: at t = %g", avi->method, halt.t);
@@ -42,13 +51,13 @@ static dvi_status stand_before(dvi__solid_avi *avi, double limit)
 
 static dvi_status run(dvi__solid_avi *avi, double t)
 {
-  const double limit = t + roundings * fmax(fabs(t), fabs(avi->clock.t0)), before = avi->clock.t;
+  const double limit = limit_of(avi, t), before = avi->clock.t;
   avi->view->t = (double)NAN; /* events of the present time may be left after a failure */
   const dvi__solid_halt halt = avi->members != NULL ? dvi__solid_run_members(avi, limit)
                                                     : dvi__solid_run(avi, limit);
   if (halt.returned != 0) {
     avi->clock.t = before;
-    return stand_before(avi, limit);
+    return stand_before(avi, limit, halt);
   }
   avi->clock.t = t;
   return DVI_OK;
@@ -71,16 +80,45 @@ static dvi_status compare_energy(dvi__solid_avi *avi)
   const dvi_elastic_energies *e = &avi->view->energies;
   const dvi_status status = dvi__judge_growth(&words, avi->clock.t, e->kinetic + e->stored,
                                               avi->view->growth, &avi->clock.allowed);
-  if (status != DVI_NOT_FINITE) avi->clock.checks++;
-  if (status != DVI_NOT_FINITE) dvi__solid_keep(avi);
+  if (status == DVI_NOT_FINITE) return status;
+  avi->clock.checks++;
+  dvi__solid_keep(avi);
   return status;
 }
 
-dvi_status dvi__solid_avi_advance(dvi__solid_avi *avi, double t)
+static dvi_status check_nodes(const dvi__solid_avi *avi)
+{
+  for (int64_t v = 0; v < avi->vertices; v++)
+    for (int i = 0; i < avi->n; i++)
+      if (!isfinite(avi->state.node[v].u[i]) || !isfinite(avi->state.node[v].v[i]))
+        return dvi__fail(
+            DVI_NOT_FINITE,
+            "%s: vertex %lld is not finite at t = %g: the steps are too long for these "
+            "strains, or a load or displacement is not finite",
+            avi->method, (long long)v, avi->clock.t);
+  return DVI_OK;
+}
+
+static dvi_status advance(dvi__solid_avi *avi, double t)
 {
   while (time_of_check(avi) <= t) {
     DVI_TRY(run(avi, time_of_check(avi)));
+    DVI_TRY(check_nodes(avi));
     DVI_TRY(compare_energy(avi));
   }
-  return run(avi, t);
+  DVI_TRY(run(avi, t));
+  return check_nodes(avi);
+}
+
+/* What is not finite is taken back: to the last look, or to the time before. */
+dvi_status dvi__solid_avi_advance(dvi__solid_avi *avi, double t)
+{
+  const double before = avi->clock.t;
+  const dvi_status status = advance(avi, t);
+  if (status != DVI_NOT_FINITE) return status;
+  dvi__solid_take_back(avi);
+  if (avi->clock.t >= before) return status;
+  (void)dvi__solid_run(avi, limit_of(avi, before));
+  avi->clock.t = before;
+  return status;
 }
