@@ -184,8 +184,6 @@ int dvi__solid_add_load(const dvi_elastic *e, int64_t cell, double t, double *f)
     double force[DVI_ELASTIC_DIMENSION_MAX];
     const int failed = load->force(t, of->at, of->is_facet ? of->normal : NULL, force, load->user);
     if (failed != 0) return failed;
-    for (int i = 0; i < n; i++)
-      if (!isfinite(force[i])) return -1;
     for (int a = 0; a <= n; a++)
       for (int i = 0; i < n && (of->nodes >> a & 1) != 0; i++)
         f[a * n + i] += of->weight * force[i];

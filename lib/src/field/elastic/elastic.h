@@ -82,8 +82,7 @@ int dvi__solid_force(const dvi_elastic *e, int64_t cell, const double *u, double
 int dvi__solid_stored(const dvi_elastic *e, int64_t cell, const double *u, double *energy);
 int dvi__solid_stiffness(const dvi_elastic *e, int64_t cell, const double *u, double *K);
 
-/* Add the loads of a cell at time t to f [(n+1)*n]. Returns 0, or as the callbacks do, or -1 for
- * forces that are not finite. */
+/* Add the loads of a cell at time t to f [(n+1)*n]. Returns 0, or as the callbacks do. */
 int dvi__solid_add_load(const dvi_elastic *e, int64_t cell, double t, double *f);
 
 /* Set the components of u and rate [n] of a vertex that are given to what the conditions say at a

@@ -91,11 +91,10 @@ static dvi_status check_nodes(const dvi__solid_avi *avi)
   for (int64_t v = 0; v < avi->vertices; v++)
     for (int i = 0; i < avi->n; i++)
       if (!isfinite(avi->state.node[v].u[i]) || !isfinite(avi->state.node[v].v[i]))
-        return dvi__fail(
-            DVI_NOT_FINITE,
-            "%s: vertex %lld is not finite at t = %g: the steps are too long for these "
-            "strains, or a load or displacement is not finite",
-            avi->method, (long long)v, avi->clock.t);
+        return dvi__fail(DVI_NOT_FINITE,
+                         "%s: vertex %lld is not finite at t = %g: the run cannot go on; take "
+                         "shorter steps",
+                         avi->method, (long long)v, avi->clock.t);
   return DVI_OK;
 }
 

@@ -85,7 +85,10 @@ int dvi__solid_pull(const dvi__solid_avi *avi, int64_t c, double t, const double
   if (returned != 0 || !(avi->cell_kind[c] & DVI__CELL_LOADED)) return returned;
   const int of_load = dvi__solid_add_load(avi->solid, avi->name[c], t, load);
   if (of_load != 0) return of_load < 0 ? of_load : -of_load;
-  for (int k = 0; k < numbers; k++) f[k] += load[k];
+  for (int k = 0; k < numbers; k++) {
+    if (!isfinite(load[k])) return -1;
+    f[k] += load[k];
+  }
   return 0;
 }
 
