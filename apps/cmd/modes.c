@@ -47,53 +47,33 @@ static int print_modes(const modes_request *r, const problem *scene, const doubl
   return good ? DONE : FAILED;
 }
 
+/* The modes of a field, or of small vibrations of a solid about rest if there is one. */
 static int find_modes(const modes_request *r, const problem *scene, const dvi_field *field)
 {
-  const int64_t cells = dvi_mesh_count(field_mesh(field), dvi_field_degree(field));
-  const dvi_modes_options options = {
-      .size = sizeof options, .count = (int)r->count, .shift = isnan(r->near) ? 0.0 : r->near};
-  int64_t zeros = 0, unknowns = 0;
-  double *eigenvalue = calloc((size_t)r->count * (size_t)(1 + cells), sizeof *eigenvalue);
-  if (eigenvalue == NULL) {
-    complain("out of memory");
-    return FAILED;
-  }
-  double *mode = eigenvalue + r->count;
-  const dvi_status status = dvi_field_modes(field, &options, eigenvalue,
-                                            r->vtu != NULL ? mode : NULL, &zeros);
-  (void)dvi_field_unknowns(field, &unknowns);
-  int code = status == DVI_OK ? print_modes(r, scene, eigenvalue, unknowns, zeros)
-                              : library_error(status);
-  if (status == DVI_BAD_SIZE) code = USAGE; /* more modes than the field has */
-  if (code == DONE && r->vtu != NULL)
-    code = field_write(field, r->vtu, "mode", (int)r->count, mode);
-  free(eigenvalue);
-  return code;
-}
-
-/* The modes of small vibrations of a solid about rest. */
-static int find_vibrations(const modes_request *r, const problem *scene)
-{
   const dvi_elastic *solid = elastic_of(scene);
-  const dvi_mesh *mesh = dvi_elastic_mesh(solid);
-  const size_t numbers = (size_t)dvi_mesh_count(mesh, 0) * (size_t)dvi_mesh_dimension(mesh);
+  const dvi_mesh *mesh = solid != NULL ? dvi_elastic_mesh(solid) : field_mesh(field);
+  const int64_t numbers = solid != NULL ? dvi_mesh_count(mesh, 0) * dvi_mesh_dimension(mesh)
+                                        : dvi_mesh_count(mesh, dvi_field_degree(field));
   const dvi_modes_options options = {
       .size = sizeof options, .count = (int)r->count, .shift = isnan(r->near) ? 0.0 : r->near};
   int64_t zeros = 0, unknowns = 0;
-  double *eigenvalue = calloc((size_t)r->count * (1 + numbers), sizeof *eigenvalue);
+  double *eigenvalue = calloc((size_t)r->count * (size_t)(1 + numbers), sizeof *eigenvalue);
   if (eigenvalue == NULL) {
     complain("out of memory");
     return FAILED;
   }
-  double *mode = eigenvalue + r->count;
-  const dvi_status status = dvi_elastic_modes(solid, &options, eigenvalue,
-                                              r->vtu != NULL ? mode : NULL, &zeros);
-  (void)dvi_elastic_unknowns(solid, &unknowns);
+  double *mode = eigenvalue + r->count, *wanted = r->vtu != NULL ? mode : NULL;
+  const dvi_status status = solid != NULL
+                                ? dvi_elastic_modes(solid, &options, eigenvalue, wanted, &zeros)
+                                : dvi_field_modes(field, &options, eigenvalue, wanted, &zeros);
+  (void)(solid != NULL ? dvi_elastic_unknowns(solid, &unknowns)
+                       : dvi_field_unknowns(field, &unknowns));
   int code = status == DVI_OK ? print_modes(r, scene, eigenvalue, unknowns, zeros)
                               : library_error(status);
-  if (status == DVI_BAD_SIZE) code = USAGE; /* more modes than the solid has */
+  if (status == DVI_BAD_SIZE) code = USAGE; /* more modes than there are */
   if (code == DONE && r->vtu != NULL)
-    code = elastic_write_modes(scene, r->vtu, (int)r->count, mode);
+    code = solid != NULL ? elastic_write_modes(scene, r->vtu, (int)r->count, mode)
+                         : field_write(field, r->vtu, "mode", (int)r->count, mode);
   free(eigenvalue);
   return code;
 }
@@ -292,9 +272,7 @@ int modes_command(int argc, char **argv)
   if (density == NULL && (r.at_static_state || r.shapes != NULL))
     code = usage_error("modes: --static and --shapes are for fields with a density");
   else
-    code = density != NULL ? find_spectrum(&r, scene, density)
-           : field != NULL ? find_modes(&r, scene, field)
-                           : find_vibrations(&r, scene);
+    code = density != NULL ? find_spectrum(&r, scene, density) : find_modes(&r, scene, field);
   problem_destroy(&scene);
   return code;
 }

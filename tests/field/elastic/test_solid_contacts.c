@@ -7,23 +7,10 @@
 
 #include "support/field/marches.h"
 #include "support/runs.h"
-#include "support/solid/judged_solids.h"
-#include "support/solid/quad_contact.h"
+#include "support/solid/throws.h"
 #include "support/suite.h"
 
 enum { LEVELS = 5, CASES = 4 };
-
-/* A block that flies as a whole, turns a little if it does, and meets obstacles with a corner. */
-typedef struct throw
-{
-  judged_solid s;
-  dvi_obstacle obstacle;
-  double *u, *rate;  /* [size] the start */
-  quad *end, *speed; /* [size] */
-  double span;
-  quad_hits hits;
-}
-throw;
 
 static const dvi_obstacle obstacles[] = {
     {
@@ -40,31 +27,16 @@ static const dvi_obstacle obstacles[] = {
      .restitution = 1},
 };
 
-static throw throw_of(int i, double span, double turn)
+static thrown throw_of(int i, double span, double turn)
 {
   const solid_case of = {
       .n = 2 + i % 2, .cells = i % 2 == 0 ? 2 : 1, .grading = 1, .law = DVI_ELASTIC_NEO_HOOKEAN};
-  throw c = {.obstacle = obstacles[i / 2], .span = span};
-  c.s = make_judged(&of, &c.obstacle, 1);
-  const int size = c.s.judge.size;
-  c.end = calloc((size_t)size, sizeof *c.end), c.speed = calloc((size_t)size, sizeof *c.speed);
-  start_judged(&c.s, turn, c.end, c.speed);
-  for (int k = 0; k < size; k++)
-    c.speed[k] = (double)(c.speed[k] + (k % of.n == 1 ? -0.5 : -0.125));
-  c.u = rounded(size, c.end), c.rate = rounded(size, c.speed);
-  quad_solid_advance_among(&c.s.judge, &c.obstacle, 1, c.span, 20, c.end, c.speed, &c.hits);
-  return c;
-}
-
-static void end_throw(throw *c)
-{
-  free(c->u), free(c->rate), free(c->end), free(c->speed);
-  end_judged_solid(&c->s);
+  return throw_block(&of, obstacles + i / 2, turn, span);
 }
 
 /* ---- mechanical methods ---- */
 
-static dvi_integrator *fly(const throw *c, dvi_system *system, const char *method)
+static dvi_integrator *fly(const thrown *c, dvi_system *system, const char *method)
 {
   const size_t size = (size_t)c->s.judge.size;
   double *q = calloc(size, sizeof *q), *p = calloc(size, sizeof *p);
@@ -75,7 +47,7 @@ static dvi_integrator *fly(const throw *c, dvi_system *system, const char *metho
   return integrator;
 }
 
-static void check_order_of(const throw *c, const char *method, long first, int order)
+static void check_order_of(const thrown *c, const char *method, long first, int order)
 {
   double error[LEVELS];
   dvi_system *system = NULL;
@@ -96,7 +68,7 @@ static void check_order_of(const throw *c, const char *method, long first, int o
 
 START_TEST(methods_keep_their_orders_at_hits)
 {
-  throw c = throw_of(_i, 0.75, 0.5);
+  thrown c = throw_of(_i, 0.75, 0.5);
   ck_assert_int_ge(c.hits.count, 1);
   check_order_of(&c, "verlet", 16, 2);
   check_order_of(&c, "galerkin:degree=2", 8, 4);
@@ -107,7 +79,7 @@ END_TEST
 /* A block that does not turn flies straight until then. */
 START_TEST(first_hits_are_exact)
 {
-  throw c = throw_of(_i, 0.75, 0);
+  thrown c = throw_of(_i, 0.75, 0);
   dvi_system *system = NULL;
   ck_assert_msg(dvi_elastic_system(c.s.elastic, &system) == DVI_OK, "%s", dvi_last_error());
   dvi_integrator *integrator = fly(&c, system, "verlet");

@@ -7,58 +7,20 @@
 
 #include "field/elastic_avi/plan.h"
 #include "support/field/generated.h"
+#include "support/field/marches.h"
 #include "support/field/solids.h"
 #include "support/suite.h"
 
 static const char *const methods[] = {"avi", "avi:classes=no", "verlet"};
 enum { METHODS = 3, NUMBERS_MOST = 3 * 1000 };
 
-static dvi_march *march_of(const dvi_elastic *solid, const char *method, double fraction)
-{
-  const dvi_march_options options = {
-      .size = sizeof options, .method = method, .fraction = fraction};
-  dvi_march *march = NULL;
-  ck_assert_msg(dvi_elastic_march_create(solid, &options, &march) == DVI_OK, "%s",
-                dvi_last_error());
-  return march;
-}
-
-static void begin(dvi_march *march, const double *u, const double *rate)
-{
-  double E[NUMBERS_MOST];
-  for (int64_t i = 0; i < dvi_march_size(march, DVI_FORM_E) && rate != NULL; i++) E[i] = -rate[i];
-  const dvi_march_state state = {.size = sizeof state, .A = u, .E = rate != NULL ? E : NULL};
-  ck_assert_msg(dvi_march_start(march, &state) == DVI_OK, "%s", dvi_last_error());
-}
-
-static void advance(dvi_march *march, double t)
-{
-  ck_assert_msg(dvi_march_advance(march, t) == DVI_OK, "%s", dvi_last_error());
-}
-
-static double observed(const dvi_march *march, const char *name)
-{
-  double value = 0;
-  for (int i = 0; dvi_march_observable(march, i) != NULL; i++) {
-    if (strcmp(dvi_march_observable(march, i), name) != 0) continue;
-    ck_assert_msg(dvi_march_observe(march, i, &value) == DVI_OK, "%s", dvi_last_error());
-    return value;
-  }
-  ck_abort_msg("no %s", name);
-}
-
-static void sample(const dvi_march *march, dvi_march_form form, double *values)
-{
-  ck_assert_msg(dvi_march_sample(march, form, 0, NULL, values) == DVI_OK, "%s", dvi_last_error());
-}
-
 /* Start the turning block. */
 static dvi_march *spun(const dvi_elastic *solid, const char *method, double fraction, double scale)
 {
   double rate[NUMBERS_MOST];
-  dvi_march *march = march_of(solid, method, fraction);
+  dvi_march *march = march_of_solid(solid, method, fraction);
   spin_block(solid, scale, rate);
-  begin(march, NULL, rate);
+  start_march_of_solid(march, NULL, rate);
   return march;
 }
 
@@ -68,8 +30,8 @@ static void check_same(const dvi_march *a, const dvi_march *b)
   double values[2][NUMBERS_MOST];
   const size_t size = (size_t)dvi_march_size(a, DVI_FORM_A) * sizeof(double);
   for (int form = 0; form < 2; form++) {
-    sample(a, (dvi_march_form)form, values[0]);
-    sample(b, (dvi_march_form)form, values[1]);
+    copy_march(a, (dvi_march_form)form, values[0]);
+    copy_march(b, (dvi_march_form)form, values[1]);
     ck_assert_mem_eq(values[0], values[1], size);
   }
 }
@@ -84,8 +46,8 @@ static double corner_error(dvi_elastic_law law, const char *method, double fract
   double u[NUMBERS_MOST], worst = 0;
   dvi_elastic *solid = block(3, 2, 2, law);
   dvi_march *march = spun(solid, method, fraction, 1);
-  advance(march, 1);
-  sample(march, DVI_FORM_A, u);
+  advance_march(march, 1);
+  copy_march(march, DVI_FORM_A, u);
   const int64_t last = dvi_march_size(march, DVI_FORM_A) - 3;
   for (int i = 0; i < 3; i++)
     worst = fmax(worst, fabs(1 + u[last + i] - x[law == DVI_ELASTIC_NEO_HOOKEAN][i]));
@@ -117,9 +79,10 @@ START_TEST(momenta_are_conserved_to_roundings)
   static const char *const names[] = {"momentum_x", "momentum_y", "momentum_z",
                                       "angular_x",  "angular_y",  "angular_z"};
   double before[6];
-  for (int k = 0; k < 6; k++) before[k] = observed(march, names[k]);
-  advance(march, 20);
-  for (int k = 0; k < 6; k++) ck_assert_double_eq_tol(observed(march, names[k]), before[k], 5e-15);
+  for (int k = 0; k < 6; k++) before[k] = observe_march(march, names[k]);
+  advance_march(march, 20);
+  for (int k = 0; k < 6; k++)
+    ck_assert_double_eq_tol(observe_march(march, names[k]), before[k], 5e-15);
   dvi_march_destroy(&march);
   dvi_elastic_destroy(&solid);
 }
@@ -131,19 +94,19 @@ START_TEST(cuts_and_observations_change_no_bit)
   dvi_march *whole = spun(solid, methods[_i], 0.5, 1), *cut = spun(solid, methods[_i], 0.5, 1);
   dvi_march_facts facts;
   dvi_march_facts_of(whole, &facts);
-  advance(whole, 1.5);
+  advance_march(whole, 1.5);
   for (int n = 1; n * facts.step < 1.5; n++) {
     double E[3 * 27], single;
     const int cell = n % 81;
-    advance(cut, n * facts.step);
-    advance(cut, n * facts.step * (1 + 4e-16));
+    advance_march(cut, n * facts.step);
+    advance_march(cut, n * facts.step * (1 + 4e-16));
     ck_assert(dvi_march_sample(cut, DVI_FORM_E, 1, &cell, &single) == DVI_OK);
-    sample(cut, DVI_FORM_E, E);
+    copy_march(cut, DVI_FORM_E, E);
     ck_assert(single == E[cell]);
-    advance(cut, fmin((n + 0.3) * facts.step, 1.5));
-    (void)observed(cut, "energy");
+    advance_march(cut, fmin((n + 0.3) * facts.step, 1.5));
+    (void)observe_march(cut, "energy");
   }
-  advance(cut, 1.5);
+  advance_march(cut, 1.5);
   check_same(whole, cut);
   dvi_march_destroy(&whole);
   dvi_march_destroy(&cut);
@@ -155,16 +118,17 @@ START_TEST(a_saved_march_goes_on_with_the_same_bits)
 {
   char path[64];
   dvi_elastic *solid = block(3, 2, 2, DVI_ELASTIC_SVK);
-  dvi_march *whole = spun(solid, methods[_i], 0.5, 1), *other = march_of(solid, methods[_i], 0.5),
-            *stranger = march_of(solid, methods[_i], 0.4);
+  dvi_march *whole = spun(solid, methods[_i], 0.5, 1),
+            *other = march_of_solid(solid, methods[_i], 0.5),
+            *stranger = march_of_solid(solid, methods[_i], 0.4);
   (void)snprintf(path, sizeof path, "elastic_avi_%d_%d.state", _i, (int)getpid());
-  advance(whole, 0.7);
+  advance_march(whole, 0.7);
   ck_assert(dvi_march_save(whole, path) == DVI_OK);
   ck_assert(dvi_march_load(other, path) == DVI_OK);
   ck_assert(dvi_march_load(stranger, path) == DVI_BAD_FILE);
   (void)remove(path);
-  advance(whole, 2);
-  advance(other, 2);
+  advance_march(whole, 2);
+  advance_march(other, 2);
   check_same(whole, other);
   dvi_march_destroy(&whole);
   dvi_march_destroy(&other);
@@ -208,11 +172,11 @@ static double swing(dvi_elastic_law law, const char *method, double fraction, do
 {
   dvi_elastic *solid = block(3, 2, 2, law);
   dvi_march *march = spun(solid, method, fraction, scale);
-  const double start = observed(march, "energy");
+  const double start = observe_march(march, "energy");
   double worst = 0;
   for (int k = 1; k <= 200; k++) {
-    advance(march, T * k / 200);
-    worst = fmax(worst, fabs(observed(march, "energy") / start - 1));
+    advance_march(march, T * k / 200);
+    worst = fmax(worst, fabs(observe_march(march, "energy") / start - 1));
   }
   dvi_march_destroy(&march);
   dvi_elastic_destroy(&solid);
@@ -263,11 +227,11 @@ START_TEST(loads_conditions_and_damping_have_order_2)
   const double fraction[] = {0.8, 0.4, 0.2, 0.1, 0.0125};
   double u[5][2][81], error[4] = {0}, slope[2];
   for (int k = 0; k < 5; k++) {
-    dvi_march *march = march_of(solid, methods[_i % 3], fraction[k]);
-    begin(march, NULL, NULL);
-    advance(march, 1);
-    sample(march, DVI_FORM_A, u[k][0]);
-    sample(march, DVI_FORM_E, u[k][1]);
+    dvi_march *march = march_of_solid(solid, methods[_i % 3], fraction[k]);
+    start_march_of_solid(march, NULL, NULL);
+    advance_march(march, 1);
+    copy_march(march, DVI_FORM_A, u[k][0]);
+    copy_march(march, DVI_FORM_E, u[k][1]);
     dvi_march_destroy(&march);
   }
   for (int form = 0; form < 2; form++) {
@@ -314,15 +278,15 @@ held_block(int (*displacement)(double, const double *, double *, double *, void 
 static void check_halt(dvi_march *march, dvi_status expected, const char *words)
 {
   double u[2][NUMBERS_MOST];
-  begin(march, NULL, NULL);
+  start_march_of_solid(march, NULL, NULL);
   ck_assert_msg(dvi_march_advance(march, 3) == expected, "%s", dvi_last_error());
   ck_assert_msg(strstr(dvi_last_error(), words) != NULL, "%s", dvi_last_error());
   const double t = dvi_march_time(march);
   ck_assert(t > 0.1 && t < 1.2);
-  sample(march, DVI_FORM_A, u[0]);
+  copy_march(march, DVI_FORM_A, u[0]);
   ck_assert(dvi_march_advance(march, 3) == expected);
   ck_assert_double_eq(dvi_march_time(march), t);
-  sample(march, DVI_FORM_A, u[1]);
+  copy_march(march, DVI_FORM_A, u[1]);
   for (int64_t i = 0; i < dvi_march_size(march, DVI_FORM_A); i++)
     ck_assert(isfinite(u[0][i]) && u[0][i] == u[1][i]);
 }
@@ -330,7 +294,7 @@ static void check_halt(dvi_march *march, dvi_status expected, const char *words)
 START_TEST(a_march_stands_before_a_cell_is_inverted)
 {
   dvi_elastic *solid = held_block(crush, NULL);
-  dvi_march *march = march_of(solid, methods[_i], 0.2);
+  dvi_march *march = march_of_solid(solid, methods[_i], 0.2);
   check_halt(march, DVI_SINGULAR, "invert");
   dvi_march_destroy(&march);
   dvi_elastic_destroy(&solid);
@@ -341,7 +305,7 @@ START_TEST(a_condition_that_fails_is_named)
 {
   int returned = _i / METHODS ? 7 : -3;
   dvi_elastic *solid = held_block(break_down, &returned);
-  dvi_march *march = march_of(solid, methods[_i % METHODS], 0.2);
+  dvi_march *march = march_of_solid(solid, methods[_i % METHODS], 0.2);
   check_halt(march, DVI_CALLBACK_FAILED,
              returned == 7 ? "a displacement that is given at" : "returned -3");
   dvi_march_destroy(&march);
@@ -358,7 +322,7 @@ START_TEST(an_alarm_tells_that_the_energy_grew)
   for (int k = 1; k < 100 && status == DVI_OK; k++) status = dvi_march_advance(march, k);
   ck_assert_msg(status == DVI_STEP_TOO_LARGE, "%s", dvi_last_error());
   ck_assert_ptr_nonnull(strstr(dvi_last_error(), "times that of the start and what loads"));
-  advance(march, 100);
+  advance_march(march, 100);
   dvi_march_destroy(&march);
   dvi_elastic_destroy(&solid);
 }
@@ -406,11 +370,11 @@ START_TEST(conditions_that_work_ring_no_alarm)
   material.lambda = material.mu = 0.01;
   dvi_elastic *solid = solid_on(generated("kuhn", options), material,
                                 (dvi_elastic_terms){.condition = &condition, .conditions = 1});
-  dvi_march *march = march_of(solid, methods[_i], 0.1);
-  begin(march, NULL, NULL);
+  dvi_march *march = march_of_solid(solid, methods[_i], 0.1);
+  start_march_of_solid(march, NULL, NULL);
   for (int k = 1; k <= 40; k++) {
-    advance(march, k / 4.0);
-    ck_assert_double_lt(observed(march, "growth"), 1.01);
+    advance_march(march, k / 4.0);
+    ck_assert_double_lt(observe_march(march, "growth"), 1.01);
   }
   dvi_march_destroy(&march);
   dvi_elastic_destroy(&solid);

@@ -7,53 +7,14 @@
 #include <unistd.h>
 
 #include "support/field/generated.h"
+#include "support/field/marches.h"
 #include "support/field/solids.h"
-#include "support/solid/judged_solids.h"
-#include "support/solid/quad_contact.h"
+#include "support/solid/throws.h"
 #include "support/suite.h"
 
 static const char *const methods[] = {"avi", "avi:classes=no", "verlet"};
 enum { METHODS = 3, NUMBERS_MOST = 3 * 27 };
 static const double restitutions[] = {0, 0.5, 1};
-
-static dvi_march *march_of(const dvi_elastic *solid, const char *method, double fraction)
-{
-  const dvi_march_options options = {
-      .size = sizeof options, .method = method, .fraction = fraction};
-  dvi_march *march = NULL;
-  ck_assert_msg(dvi_elastic_march_create(solid, &options, &march) == DVI_OK, "%s",
-                dvi_last_error());
-  return march;
-}
-
-static void begin(dvi_march *march, const double *u, const double *rate)
-{
-  double E[NUMBERS_MOST] = {0};
-  for (int64_t i = 0; i < dvi_march_size(march, DVI_FORM_E); i++) E[i] = -rate[i];
-  const dvi_march_state state = {.size = sizeof state, .A = u, .E = E};
-  ck_assert_msg(dvi_march_start(march, &state) == DVI_OK, "%s", dvi_last_error());
-}
-
-static void advance(dvi_march *march, double t)
-{
-  ck_assert_msg(dvi_march_advance(march, t) == DVI_OK, "%s", dvi_last_error());
-}
-
-static double observed(const dvi_march *march, const char *name)
-{
-  double value = 0;
-  for (int i = 0; dvi_march_observable(march, i) != NULL; i++) {
-    if (strcmp(dvi_march_observable(march, i), name) != 0) continue;
-    ck_assert_msg(dvi_march_observe(march, i, &value) == DVI_OK, "%s", dvi_last_error());
-    return value;
-  }
-  ck_abort_msg("no %s", name);
-}
-
-static void sample(const dvi_march *march, dvi_march_form form, double *values)
-{
-  ck_assert_msg(dvi_march_sample(march, form, 0, NULL, values) == DVI_OK, "%s", dvi_last_error());
-}
 
 static const double *points_of(const dvi_elastic *solid)
 {
@@ -90,51 +51,24 @@ enum { THROWS = 8, RUNS = 21 };
 
 static const double runs_in_half = 4; /* after which the step is halved */
 
-/* A block that flies and turns, and meets an obstacle with a corner. */
-typedef struct throw
-{
-  judged_solid s;
-  dvi_obstacle obstacle;
-  double *u, *rate;  /* [size] the start */
-  quad *end, *speed; /* [size] */
-  double span;
-  quad_hits hits;
-}
-throw;
-
-static throw throw_of(int i)
+static thrown throw_of(int i)
 {
   const solid_case of = {
       .n = 2 + i % 2, .cells = i % 2 ? 1 : 2, .grading = 1.5, .law = DVI_ELASTIC_NEO_HOOKEAN};
-  throw c = {.obstacle = obstacles[i / 2], .span = 0.75};
-  c.s = make_judged(&of, &c.obstacle, 1);
-  const int size = c.s.judge.size;
-  c.end = calloc((size_t)size, sizeof *c.end), c.speed = calloc((size_t)size, sizeof *c.speed);
-  start_judged(&c.s, 0.5, c.end, c.speed);
-  for (int k = 0; k < size; k++)
-    c.speed[k] = (double)(c.speed[k] + (k % of.n == 1 ? -0.5 : -0.125));
-  c.u = rounded(size, c.end), c.rate = rounded(size, c.speed);
-  quad_solid_advance_among(&c.s.judge, &c.obstacle, 1, c.span, 20, c.end, c.speed, &c.hits);
-  return c;
-}
-
-static void end_throw(throw *c)
-{
-  free(c->u), free(c->rate), free(c->end), free(c->speed);
-  end_judged_solid(&c->s);
+  return throw_block(&of, obstacles + i / 2, 0.5, 0.75);
 }
 
 /* Set the errors of u and u'. */
-static void measure(const throw *c, const char *method, double fraction, double error[2])
+static void measure(const thrown *c, const char *method, double fraction, double error[2])
 {
   const int size = c->s.judge.size;
   double values[NUMBERS_MOST];
-  dvi_march *march = march_of(c->s.elastic, method, fraction);
-  begin(march, c->u, c->rate);
-  advance(march, c->span);
-  sample(march, DVI_FORM_A, values);
+  dvi_march *march = march_of_solid(c->s.elastic, method, fraction);
+  start_march_of_solid(march, c->u, c->rate);
+  advance_march(march, c->span);
+  copy_march(march, DVI_FORM_A, values);
   error[0] = error_of_solid(size, values, c->end);
-  sample(march, DVI_FORM_E, values);
+  copy_march(march, DVI_FORM_E, values);
   for (int k = 0; k < size; k++) values[k] = -values[k];
   error[1] = error_of_solid(size, values, c->speed);
   dvi_march_destroy(&march);
@@ -144,7 +78,7 @@ static void measure(const throw *c, const char *method, double fraction, double 
 START_TEST(marches_keep_order_2_at_hits)
 {
   const char *method = methods[_i / THROWS];
-  throw c = throw_of(_i % THROWS);
+  thrown c = throw_of(_i % THROWS);
   double order[2] = {0}, weight = 0;
   ck_assert_int_ge(c.hits.count, 1);
   for (int run = 0; run < RUNS; run++) {
@@ -196,13 +130,13 @@ static dvi_elastic *falling(double restitution, double friction, double height, 
       (dvi_elastic_terms){.load = &load, .loads = 1, .obstacle = &floor, .obstacles = 1});
 }
 
-static dvi_march *thrown(const dvi_elastic *solid, const char *method, double fraction, double vx,
+static dvi_march *tossed(const dvi_elastic *solid, const char *method, double fraction, double vx,
                          double vy)
 {
   double rate[NUMBERS_MOST] = {0};
-  dvi_march *march = march_of(solid, method, fraction);
+  dvi_march *march = march_of_solid(solid, method, fraction);
   for (int64_t i = 0; i < dvi_march_size(march, DVI_FORM_A); i++) rate[i] = i % 2 ? vy : vx;
-  begin(march, NULL, rate);
+  start_march_of_solid(march, NULL, rate);
   return march;
 }
 
@@ -211,7 +145,7 @@ static double lowest(const dvi_elastic *solid, const dvi_march *march, double he
 {
   double u[NUMBERS_MOST], least = INFINITY;
   const double *X = points_of(solid);
-  sample(march, DVI_FORM_A, u);
+  copy_march(march, DVI_FORM_A, u);
   for (int64_t i = 1; i < dvi_march_size(march, DVI_FORM_A); i += 2)
     least = fmin(least, X[i] + u[i] + height);
   return least;
@@ -222,13 +156,13 @@ static double swing(const char *method, double fraction)
 {
   double force[] = {0, -g_down}, worst = 0;
   dvi_elastic *solid = falling(1, 0, 0.25, 0, force);
-  dvi_march *march = thrown(solid, method, fraction, 0, 0);
-  const double start = observed(march, "energy");
+  dvi_march *march = tossed(solid, method, fraction, 0, 0);
+  const double start = observe_march(march, "energy");
   for (int k = 1; k <= 60; k++) {
-    advance(march, k / 2.0);
-    worst = fmax(worst, fabs(observed(march, "energy") - start));
+    advance_march(march, k / 2.0);
+    worst = fmax(worst, fabs(observe_march(march, "energy") - start));
   }
-  ck_assert_double_gt(observed(march, "hits"), 50);
+  ck_assert_double_gt(observe_march(march, "hits"), 50);
   dvi_march_destroy(&march);
   dvi_elastic_destroy(&solid);
   return worst;
@@ -249,17 +183,17 @@ START_TEST(a_flat_hit_has_the_impulse_of_its_restitution)
   double force[] = {0, 0}, floor_mass = 0;
   const double e = restitutions[_i / METHODS];
   dvi_elastic *solid = falling(e, 0, 0.25, 0, force);
-  dvi_march *march = thrown(solid, methods[_i % METHODS], 0.3, 0.25, -0.5);
+  dvi_march *march = tossed(solid, methods[_i % METHODS], 0.3, 0.25, -0.5);
   const double *X = points_of(solid);
   for (int v = 0; v < 9; v++)
     if (X[2 * v + 1] == 0) floor_mass += dvi_elastic_masses(solid)[v];
-  advance(march, 0.4999);
-  ck_assert_double_eq(observed(march, "hits"), 0);
-  advance(march, 0.5001);
-  ck_assert_double_eq(observed(march, "hits"), 3);
-  ck_assert_double_eq_tol(observed(march, "momentum_y"), -0.5 + (1 + e) * 0.5 * floor_mass,
+  advance_march(march, 0.4999);
+  ck_assert_double_eq(observe_march(march, "hits"), 0);
+  advance_march(march, 0.5001);
+  ck_assert_double_eq(observe_march(march, "hits"), 3);
+  ck_assert_double_eq_tol(observe_march(march, "momentum_y"), -0.5 + (1 + e) * 0.5 * floor_mass,
                           e > 0 ? 1e-14 : 2e-5);
-  ck_assert_double_eq_tol(observed(march, "momentum_x"), 0.25, 1e-14);
+  ck_assert_double_eq_tol(observe_march(march, "momentum_x"), 0.25, 1e-14);
   dvi_march_destroy(&march);
   dvi_elastic_destroy(&solid);
 }
@@ -272,16 +206,16 @@ START_TEST(a_damped_block_comes_to_rest)
   double force[] = {0, -g_down};
   const int is_free = _i / 3 % METHODS == 1;
   dvi_elastic *solid = falling(restitutions[_i % 3], _i < 9 ? 0 : 0.3, 0.125, 0.5, force);
-  dvi_march *march = thrown(solid, methods[_i / 3 % METHODS], 0.4, 0, 0);
-  double energy = observed(march, "energy");
+  dvi_march *march = tossed(solid, methods[_i / 3 % METHODS], 0.4, 0, 0);
+  double energy = observe_march(march, "energy");
   for (int k = 1; k <= 80; k++) {
-    advance(march, k);
+    advance_march(march, k);
     ck_assert_double_gt(lowest(solid, march, 0.125), -1e-14);
-    const double now = observed(march, "energy");
+    const double now = observe_march(march, "energy");
     ck_assert_double_lt(now, energy + (is_free ? 1e-4 : 1e-15));
     energy = now;
   }
-  ck_assert_double_lt(observed(march, "kinetic"), is_free ? 2e-4 : 1e-15);
+  ck_assert_double_lt(observe_march(march, "kinetic"), is_free ? 2e-4 : 1e-15);
   dvi_march_destroy(&march);
   dvi_elastic_destroy(&solid);
 }
@@ -296,12 +230,12 @@ static double friction_error(double e, double height, const char *method, double
   double force[] = {g_along, -g_down}, worst = 0;
   const double mu = 0.25;
   dvi_elastic *solid = falling(e, mu, height, 0, force);
-  dvi_march *march = thrown(solid, method, fraction, 1, 0);
+  dvi_march *march = tossed(solid, method, fraction, 1, 0);
   for (int k = 1; k <= 20; k++) {
     const double t = k / 2.0;
-    advance(march, t);
-    const double along = observed(march, "momentum_x") - 1 - g_along * t,
-                 floor = observed(march, "momentum_y") + g_down * t;
+    advance_march(march, t);
+    const double along = observe_march(march, "momentum_x") - 1 - g_along * t,
+                 floor = observe_march(march, "momentum_y") + g_down * t;
     worst = fmax(worst, fabs(along + mu * floor));
   }
   dvi_march_destroy(&march);
@@ -328,18 +262,19 @@ START_TEST(friction_stops_and_holds_a_block)
   double force[] = {g_along, -g_down}, u[2][NUMBERS_MOST];
   const double brake = 0.6 * g_down - g_along;
   dvi_elastic *solid = falling(0, 0.6, 0, 1, force);
-  dvi_march *march = thrown(solid, methods[_i], 0.4, 0.25, 0);
-  advance(march, 0.75);
-  ck_assert_double_eq_tol(observed(march, "momentum_x"), (0.25 + brake) * exp(-0.75) - brake, 0.02);
-  advance(march, 60);
-  sample(march, DVI_FORM_A, u[0]);
-  advance(march, 120);
-  sample(march, DVI_FORM_A, u[1]);
+  dvi_march *march = tossed(solid, methods[_i], 0.4, 0.25, 0);
+  advance_march(march, 0.75);
+  ck_assert_double_eq_tol(observe_march(march, "momentum_x"), (0.25 + brake) * exp(-0.75) - brake,
+                          0.02);
+  advance_march(march, 60);
+  copy_march(march, DVI_FORM_A, u[0]);
+  advance_march(march, 120);
+  copy_march(march, DVI_FORM_A, u[1]);
   const double *X = points_of(solid);
   for (int v = 0; v < 9; v++)
     for (int i = 0; i < 2 && X[2 * v + 1] == 0; i++)
       ck_assert_double_eq(u[0][2 * v + i], u[1][2 * v + i]);
-  ck_assert_double_lt(observed(march, "kinetic"), methods[_i][3] == ':' ? 1e-6 : 1e-20);
+  ck_assert_double_lt(observe_march(march, "kinetic"), methods[_i][3] == ':' ? 1e-6 : 1e-20);
   dvi_march_destroy(&march);
   dvi_elastic_destroy(&solid);
 }
@@ -351,11 +286,11 @@ static void check_same(const dvi_march *a, const dvi_march *b)
 {
   double values[2][NUMBERS_MOST];
   for (int form = 0; form < 2; form++) {
-    sample(a, (dvi_march_form)form, values[0]);
-    sample(b, (dvi_march_form)form, values[1]);
+    copy_march(a, (dvi_march_form)form, values[0]);
+    copy_march(b, (dvi_march_form)form, values[1]);
     ck_assert_mem_eq(values[0], values[1], (size_t)dvi_march_size(a, DVI_FORM_A) * sizeof(double));
   }
-  ck_assert_double_eq(observed(a, "hits"), observed(b, "hits"));
+  ck_assert_double_eq(observe_march(a, "hits"), observe_march(b, "hits"));
 }
 
 START_TEST(cuts_and_saves_among_hits_change_no_bit)
@@ -363,24 +298,24 @@ START_TEST(cuts_and_saves_among_hits_change_no_bit)
   double force[] = {g_along, -g_down};
   char path[64];
   dvi_elastic *solid = falling(0.5, 0.3, 0.01, 0, force);
-  dvi_march *whole = thrown(solid, methods[_i], 0.4, 0.25, -0.25),
-            *cut = thrown(solid, methods[_i], 0.4, 0.25, -0.25),
-            *saved = march_of(solid, methods[_i], 0.4);
+  dvi_march *whole = tossed(solid, methods[_i], 0.4, 0.25, -0.25),
+            *cut = tossed(solid, methods[_i], 0.4, 0.25, -0.25),
+            *saved = march_of_solid(solid, methods[_i], 0.4);
   (void)snprintf(path, sizeof path, "elastic_contacts_%d_%d.state", _i, (int)getpid());
   for (int k = 1; k <= 100; k++) {
     const int component = k % 18;
     double single, all[NUMBERS_MOST];
-    advance(cut, k * 0.05);
+    advance_march(cut, k * 0.05);
     ck_assert(dvi_march_sample(cut, DVI_FORM_E, 1, &component, &single) == DVI_OK);
-    sample(cut, DVI_FORM_E, all);
+    copy_march(cut, DVI_FORM_E, all);
     ck_assert(single == all[component]);
     if (k == 37) ck_assert(dvi_march_save(cut, path) == DVI_OK);
     if (k == 37) ck_assert(dvi_march_load(saved, path) == DVI_OK);
   }
   (void)remove(path);
-  advance(whole, 5);
-  advance(saved, 5);
-  ck_assert_double_gt(observed(whole, "hits"), 5);
+  advance_march(whole, 5);
+  advance_march(saved, 5);
+  ck_assert_double_gt(observe_march(whole, "hits"), 5);
   check_same(whole, cut);
   check_same(whole, saved);
   dvi_march_destroy(&whole);
@@ -396,13 +331,13 @@ START_TEST(threads_change_no_bit_among_hits)
   dvi_elastic *solid = falling(0.5, 0.3, 0.01, 0, force);
   const dvi_march_options options = {
       .size = sizeof options, .method = methods[_i], .fraction = 0.4, .threads = 3};
-  dvi_march *one = thrown(solid, methods[_i], 0.4, 0.25, -0.25), *three = NULL;
+  dvi_march *one = tossed(solid, methods[_i], 0.4, 0.25, -0.25), *three = NULL;
   ck_assert(dvi_elastic_march_create(solid, &options, &three) == DVI_OK);
   for (int i = 0; i < 18; i++) E[i] = i % 2 ? 0.25 : -0.25;
   const dvi_march_state state = {.size = sizeof state, .E = E};
   ck_assert(dvi_march_start(three, &state) == DVI_OK);
-  advance(one, 5);
-  advance(three, 5);
+  advance_march(one, 5);
+  advance_march(three, 5);
   check_same(one, three);
   dvi_march_destroy(&one);
   dvi_march_destroy(&three);
@@ -420,22 +355,22 @@ START_TEST(a_block_stays_in_a_cave)
                              .restitution = restitutions[_i / METHODS]};
   const solid_case of = {.n = 3, .cells = 1, .grading = 1, .law = DVI_ELASTIC_NEO_HOOKEAN};
   judged_solid s = make_judged(&of, &cave, 1);
-  dvi_march *march = march_of(s.elastic, methods[_i % METHODS], 0.4);
+  dvi_march *march = march_of_solid(s.elastic, methods[_i % METHODS], 0.4);
   for (int k = 0; k < 24; k++) rate[k] = k % 3 == 0 ? 0.3 : k % 3 == 1 ? -0.2 : 0.1;
-  begin(march, NULL, rate);
-  const double energy = observed(march, "energy"), *X = points_of(s.elastic);
+  start_march_of_solid(march, NULL, rate);
+  const double energy = observe_march(march, "energy"), *X = points_of(s.elastic);
   for (int k = 1; k <= 40; k++) {
-    advance(march, k / 2.0);
-    sample(march, DVI_FORM_A, u);
+    advance_march(march, k / 2.0);
+    copy_march(march, DVI_FORM_A, u);
     for (int v = 0; v < 8; v++) {
       double square = 0;
       for (int i = 0; i < 3; i++)
         square += (X[3 * v + i] + u[3 * v + i] - 0.5) * (X[3 * v + i] + u[3 * v + i] - 0.5);
       ck_assert_double_lt(square, 1 + 1e-14);
     }
-    ck_assert_double_lt(observed(march, "energy"), 1.05 * energy);
+    ck_assert_double_lt(observe_march(march, "energy"), 1.05 * energy);
   }
-  ck_assert_double_gt(observed(march, "hits"), 3);
+  ck_assert_double_gt(observe_march(march, "hits"), 3);
   dvi_march_destroy(&march);
   end_judged_solid(&s);
 }
@@ -445,7 +380,7 @@ START_TEST(a_start_inside_of_an_obstacle_is_refused)
 {
   double force[] = {0, 0}, u[18] = {0};
   dvi_elastic *solid = falling(0, 0, 0.25, 0, force);
-  dvi_march *march = march_of(solid, methods[_i], 0.4);
+  dvi_march *march = march_of_solid(solid, methods[_i], 0.4);
   const dvi_march_state state = {.size = sizeof state, .A = u};
   u[1] = -0.5;
   ck_assert(dvi_march_start(march, &state) == DVI_BAD_ARGUMENT);

@@ -29,9 +29,14 @@ double step_of_march(const dvi_march *march)
   return facts.step;
 }
 
+void copy_march(const dvi_march *march, dvi_march_form form, double *values)
+{
+  ck_assert_msg(dvi_march_sample(march, form, 0, NULL, values) == DVI_OK, "%s", dvi_last_error());
+}
+
 double *sample_march(const dvi_march *march, dvi_march_form form)
 {
   double *values = calloc((size_t)dvi_march_size(march, form) + 1, sizeof *values);
-  ck_assert_msg(dvi_march_sample(march, form, 0, NULL, values) == DVI_OK, "%s", dvi_last_error());
+  copy_march(march, form, values);
   return values;
 }

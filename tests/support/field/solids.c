@@ -66,3 +66,23 @@ dvi_integrator *start_solid(const dvi_elastic *solid, const dvi_system *system, 
   free(q);
   return integrator;
 }
+
+dvi_march *march_of_solid(const dvi_elastic *solid, const char *method, double fraction)
+{
+  const dvi_march_options options = {
+      .size = sizeof options, .method = method, .fraction = fraction};
+  dvi_march *march = NULL;
+  ck_assert_msg(dvi_elastic_march_create(solid, &options, &march) == DVI_OK, "%s",
+                dvi_last_error());
+  return march;
+}
+
+void start_march_of_solid(dvi_march *march, const double *u, const double *rate)
+{
+  const int64_t numbers = dvi_march_size(march, DVI_FORM_E);
+  double *E = calloc((size_t)numbers, sizeof *E);
+  for (int64_t i = 0; i < numbers && rate != NULL; i++) E[i] = -rate[i];
+  const dvi_march_state state = {.size = sizeof state, .A = u, .E = E};
+  ck_assert_msg(dvi_march_start(march, &state) == DVI_OK, "%s", dvi_last_error());
+  free(E);
+}

@@ -23,4 +23,9 @@ dvi_system *system_of_solid(dvi_elastic *solid);
 dvi_integrator *start_solid(const dvi_elastic *solid, const dvi_system *system, const char *method,
                             const double *rate);
 
+/* A march by a method with steps of a fraction, and its start at displacements and rates
+ * [vertices*n], which may be NULL for 0. */
+dvi_march *march_of_solid(const dvi_elastic *solid, const char *method, double fraction);
+void start_march_of_solid(dvi_march *march, const double *u, const double *rate);
+
 #endif

@@ -105,13 +105,7 @@ bool dvi__elastic_read_boundary(dvi_scene *scene, const dvi__tree *section)
   const size_t most = (size_t)DVI__SOLID_AXES * (size_t)section->count + 1;
   s->condition = dvi__arena_take(&scene->arena, most, sizeof *s->condition);
   if (s->condition == NULL) return dvi__scene_no_memory(scene);
-  if (section->kind == DVI__SCALAR)
-    return read_condition(scene, "boundary", section->span, section);
-  if (!dvi__want_mapping(scene, section, "boundary")) return false;
-  for (int i = 0; i < section->count; i++)
-    if (!read_condition(scene, section->key[i]->text, section->key[i]->span, section->child[i]))
-      return false;
-  return true;
+  return dvi__read_by_part(scene, section, read_condition);
 }
 
 /* ---- loads ---- */

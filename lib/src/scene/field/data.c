@@ -158,6 +158,15 @@ static bool read_condition(dvi_scene *scene, const char *part, dvi__span span,
   return true;
 }
 
+bool dvi__read_by_part(dvi_scene *scene, const dvi__tree *section, dvi__part_reader *read)
+{
+  if (section->kind == DVI__SCALAR) return read(scene, "boundary", section->span, section);
+  if (!dvi__want_mapping(scene, section, "boundary")) return false;
+  for (int i = 0; i < section->count; i++)
+    if (!read(scene, section->key[i]->text, section->key[i]->span, section->child[i])) return false;
+  return true;
+}
+
 bool dvi__read_boundary(dvi_scene *scene, const dvi__tree *section)
 {
   struct dvi__scene_field *field = scene->field;
@@ -167,13 +176,7 @@ bool dvi__read_boundary(dvi_scene *scene, const dvi__tree *section)
   field->condition = dvi__arena_take(&scene->arena, (size_t)section->count + 1,
                                      sizeof *field->condition);
   if (field->condition == NULL) return dvi__scene_no_memory(scene);
-  if (section->kind == DVI__SCALAR)
-    return read_condition(scene, "boundary", section->span, section);
-  if (!dvi__want_mapping(scene, section, "boundary")) return false;
-  for (int i = 0; i < section->count; i++)
-    if (!read_condition(scene, section->key[i]->text, section->key[i]->span, section->child[i]))
-      return false;
-  return true;
+  return dvi__read_by_part(scene, section, read_condition);
 }
 
 /* ---- the rest ---- */

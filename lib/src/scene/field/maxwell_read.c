@@ -346,14 +346,10 @@ bool dvi__maxwell_read_walls(dvi_scene *scene, const dvi__tree *section)
   struct dvi__scene_maxwell *m = scene->field->maxwell;
   m->wall = dvi__arena_take(&scene->arena, (size_t)section->count + 1, sizeof *m->wall);
   if (m->wall == NULL) return dvi__scene_no_memory(scene);
-  if (section->kind == DVI__SCALAR || dvi__tree_find(section, "cpml") != NULL ||
-      dvi__tree_find(section, "bloch") != NULL)
+  if (dvi__tree_find(section, "cpml") != NULL || dvi__tree_find(section, "bloch") != NULL)
     return read_wall(scene, "boundary", section->span, section);
-  if (!dvi__want_mapping(scene, section, "boundary")) return false;
-  for (int i = 0; i < section->count; i++)
-    if (!read_wall(scene, section->key[i]->text, section->key[i]->span, section->child[i]))
-      return false;
-  return replace_whole(scene) && phases_agree(scene);
+  return dvi__read_by_part(scene, section, read_wall) && replace_whole(scene) &&
+         phases_agree(scene);
 }
 
 /* ---- sources ---- */
