@@ -3,7 +3,9 @@
 #include <dvi/elastic.h>
 #include <math.h>
 
+#include "support/field/generated.h"
 #include "support/field/marches.h"
+#include "support/field/solids.h"
 #include "support/suite.h"
 
 /* A bar whose layers grow from 1 to 20, with cells twice as wide as the thickest layer. */
@@ -15,28 +17,16 @@ static dvi_elastic *graded_bar(void)
                                          .cells = {LAYERS, 2, 2},
                                          .extent = {1, width, width},
                                          .grading = {grading, 1, 1}};
-  const dvi_elastic_material material = {
-      .part = "all", .law = DVI_ELASTIC_SVK, .lambda = 1, .mu = 1, .rho = 1};
-  dvi_mesh *mesh = NULL;
-  dvi_elastic *elastic = NULL;
-  ck_assert_msg(dvi_mesh_generate("kuhn", &options, &mesh) == DVI_OK, "%s", dvi_last_error());
-  const dvi_elastic_terms terms = {
-      .size = sizeof terms, .mesh = mesh, .material = &material, .materials = 1};
-  ck_assert_msg(dvi_elastic_create(&terms, &elastic) == DVI_OK, "%s", dvi_last_error());
-  dvi_mesh_destroy(&mesh);
-  return elastic;
+  return solid_on(generated("kuhn", options), unit_material(DVI_ELASTIC_SVK),
+                  (dvi_elastic_terms){0});
 }
 
 /* Forces in a unit of time. */
 static double rate_of(const dvi_elastic *elastic, const char *method)
 {
-  const dvi_march_options options = {.size = sizeof options, .method = method, .fraction = 0.5};
-  const dvi_march_state rest = {.size = sizeof rest};
-  dvi_march *march = NULL;
+  dvi_march *march = march_of_solid(elastic, method, 0.5);
   dvi_march_facts facts;
-  ck_assert_msg(dvi_elastic_march_create(elastic, &options, &march) == DVI_OK, "%s",
-                dvi_last_error());
-  ck_assert_msg(dvi_march_start(march, &rest) == DVI_OK, "%s", dvi_last_error());
+  start_march_of_solid(march, NULL, NULL);
   dvi_march_facts_of(march, &facts);
   const double span = 128 * facts.step;
   advance_march(march, span);

@@ -6,39 +6,16 @@
 #include <stdlib.h>
 
 #include "support/field/marches.h"
-#include "support/solid/blocks.h"
+#include "support/field/solids.h"
 #include "support/suite.h"
-
-static dvi_elastic *block_of(double grading, dvi_elastic_law law)
-{
-  dvi_mesh *mesh = graded_block(3, 2, grading);
-  const dvi_elastic_material material = {.part = "all", .law = law, .lambda = 1, .mu = 1, .rho = 1};
-  const dvi_elastic_terms terms = {
-      .size = sizeof terms, .mesh = mesh, .material = &material, .materials = 1};
-  dvi_elastic *elastic = NULL;
-  ck_assert_msg(dvi_elastic_create(&terms, &elastic) == DVI_OK, "%s", dvi_last_error());
-  dvi_mesh_destroy(&mesh);
-  return elastic;
-}
 
 static dvi_march *begin(const dvi_elastic *elastic, const char *method, double fraction,
                         double size)
 {
-  const dvi_mesh *mesh = dvi_elastic_mesh(elastic);
-  const double *X = dvi_mesh_points(mesh);
-  double E[81];
-  for (int i = 0; i < 81; i += 3) {
-    E[i] = -0.2 * size * X[i + 1];
-    E[i + 1] = 0.1 * size * X[i + 2];
-    E[i + 2] = -0.15 * size * X[i] * X[i + 2];
-  }
-  const dvi_march_options options = {
-      .size = sizeof options, .method = method, .fraction = fraction};
-  const dvi_march_state start = {.size = sizeof start, .E = E};
-  dvi_march *march = NULL;
-  ck_assert_msg(dvi_elastic_march_create(elastic, &options, &march) == DVI_OK, "%s",
-                dvi_last_error());
-  ck_assert_msg(dvi_march_start(march, &start) == DVI_OK, "%s", dvi_last_error());
+  double rate[81];
+  dvi_march *march = march_of_solid(elastic, method, fraction);
+  spin_block(elastic, size, rate);
+  start_march_of_solid(march, NULL, rate);
   return march;
 }
 
@@ -70,7 +47,7 @@ static double change_of(int from, int to, const double *before, const double *af
 
 static void check_momenta(const char *method, double events)
 {
-  dvi_elastic *elastic = block_of(2, DVI_ELASTIC_SVK);
+  dvi_elastic *elastic = block(3, 2, 2, DVI_ELASTIC_SVK);
   dvi_march *march = begin(elastic, method, 0.5, 1);
   dvi_march_facts facts = {0};
   double before[6], after[6];
@@ -142,7 +119,7 @@ static double span_of_run(void)
  * energy. Free steps have not. */
 START_TEST(small_vibrations_keep_their_energy)
 {
-  dvi_elastic *elastic = block_of(2, DVI_ELASTIC_SVK);
+  dvi_elastic *elastic = block(3, 2, 2, DVI_ELASTIC_SVK);
   const drift classes = drift_of(elastic, "avi", 0.5, 0.01, span_of_run()),
               free_steps = drift_of(elastic, "avi:classes=no", 0.5, 0.01, span_of_run());
   ck_assert_double_le(classes.between_halves, is_short_run() ? 1e-5 : 2e-6);
@@ -153,7 +130,7 @@ END_TEST
 
 START_TEST(large_motions_keep_their_energy)
 {
-  dvi_elastic *elastic = block_of(2, DVI_ELASTIC_SVK);
+  dvi_elastic *elastic = block(3, 2, 2, DVI_ELASTIC_SVK);
   const drift classes = drift_of(elastic, "avi", 0.5, 1, span_of_run()),
               free_steps = drift_of(elastic, "avi:classes=no", 0.7, 1, span_of_run());
   ck_assert_double_le(classes.most, 1.75e-3);
@@ -180,7 +157,7 @@ static dvi_stability stability_of(const dvi_elastic *elastic, const char *method
 /* Free steps of 0.9 of the bounds make the energy grow, and the checker says so before. */
 START_TEST(growing_vibrations_are_foreseen)
 {
-  dvi_elastic *elastic = block_of(3, DVI_ELASTIC_SVK);
+  dvi_elastic *elastic = block(3, 2, 3, DVI_ELASTIC_SVK);
   const dvi_stability report = stability_of(elastic, "avi:classes=no", 0.9);
   ck_assert_int_eq(report.is_stable, 0);
   ck_assert_double_gt(report.growth, 1 + report.resolution);
@@ -193,7 +170,7 @@ END_TEST
 START_TEST(classes_are_stable)
 {
   for (int grading = 2; grading <= 3; grading++) {
-    dvi_elastic *elastic = block_of(grading, DVI_ELASTIC_NEO_HOOKEAN);
+    dvi_elastic *elastic = block(3, 2, grading, DVI_ELASTIC_NEO_HOOKEAN);
     ck_assert_int_eq(stability_of(elastic, "avi", 0.5).is_stable, 1);
     dvi_elastic_destroy(&elastic);
   }

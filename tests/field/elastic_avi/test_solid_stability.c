@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "support/field/generated.h"
+#include "support/field/marches.h"
 #include "support/field/solids.h"
 #include "support/suite.h"
 
@@ -34,14 +35,6 @@ static dvi_stability stability_of(sample of, const char *method, double fraction
   return report;
 }
 
-static double energy_of(const dvi_march *march)
-{
-  double energy = 0;
-  ck_assert_str_eq(dvi_march_observable(march, 0), "energy");
-  ck_assert_int_eq(dvi_march_observe(march, 0, &energy), DVI_OK);
-  return energy;
-}
-
 /* A march stops at growth, and can go on. */
 static void advance(dvi_march *march, double t)
 {
@@ -53,18 +46,15 @@ static void advance(dvi_march *march, double t)
 /* The rate at which the logarithm of the amplitude grows in the second half of a run. */
 static double rate_of_run(sample of, const char *method, double fraction, double span)
 {
-  const dvi_march_options how = {.size = sizeof how, .method = method, .fraction = fraction};
   double u[81];
   dvi_elastic *solid = cube(of);
-  dvi_march *march = NULL;
+  dvi_march *march = march_of_solid(solid, method, fraction);
   for (int i = 0; i < 81; i++) u[i] = 1e-3 * sin(1.7 * i * i);
-  const dvi_march_state state = {.size = sizeof state, .A = u};
-  ck_assert_msg(dvi_elastic_march_create(solid, &how, &march) == DVI_OK, "%s", dvi_last_error());
-  ck_assert_int_eq(dvi_march_start(march, &state), DVI_OK);
+  start_march_of_solid(march, u, NULL);
   advance(march, span / 2);
-  const double half = energy_of(march);
+  const double half = observe_march(march, "energy");
   advance(march, span);
-  const double rate = log(energy_of(march) / half) / span;
+  const double rate = log(observe_march(march, "energy") / half) / span;
   dvi_march_destroy(&march);
   dvi_elastic_destroy(&solid);
   return rate;

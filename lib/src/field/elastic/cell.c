@@ -94,6 +94,28 @@ int dvi__solid_forces(const dvi_elastic *e, int64_t first, int count, const doub
   return 0;
 }
 
+static inline void find_rest_force(int n, const dvi_elastic *e, int64_t cell, const double *u,
+                                   double *f)
+{
+  double H[DVI__SOLID_ENTRIES], P[DVI__SOLID_ENTRIES];
+  const double *g = e->gradient + cell * (n + 1) * n,
+               *moduli = e->materials[e->material[cell]].rest;
+  dvi__displacement_gradient(n, g, u, H);
+  for (int i = 0; i < n * n; i++) {
+    P[i] = 0;
+    for (int k = 0; k < n * n; k++) P[i] += moduli[i * n * n + k] * H[k];
+  }
+  pull(n, e->volume[cell], g, P, f);
+}
+
+void dvi__solid_rest_force(const dvi_elastic *e, int64_t cell, const double *u, double *f)
+{
+  if (e->n == 3)
+    find_rest_force(3, e, cell, u, f);
+  else
+    find_rest_force(2, e, cell, u, f);
+}
+
 /* ---- energies and stiffnesses ---- */
 
 void dvi__solid_strain(const dvi_elastic *e, int64_t cell, const double *u, double *H)

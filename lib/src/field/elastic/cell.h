@@ -27,6 +27,9 @@ enum { DVI__SOLID_BATCH = 32 };
 int dvi__solid_forces(const dvi_elastic *e, int64_t first, int count, const double *u, double *f,
                       int *failed);
 
+/* Give the forces f [(n+1)*n] of the stiffness at rest. */
+void dvi__solid_rest_force(const dvi_elastic *e, int64_t cell, const double *u, double *f);
+
 /* Give H of a cell. */
 void dvi__solid_strain(const dvi_elastic *e, int64_t cell, const double *u, double *H);
 

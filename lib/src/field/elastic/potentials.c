@@ -10,30 +10,6 @@ enum { NUMBERS = DVI__SOLID_NUMBERS };
 
 /* ---- shares of what a cell stores ---- */
 
-/* Give P = A H with the Hessian A of W at rest. */
-static void find_rest_stress(int n, const double *A, const double *H, double *P)
-{
-  for (int i = 0; i < n * n; i++) {
-    P[i] = 0;
-    for (int k = 0; k < n * n; k++) P[i] += A[i * n * n + k] * H[k];
-  }
-}
-
-/* Give the forces of the stiffness at rest. */
-static void find_rest_force(const dvi_elastic *e, int64_t cell, const double *u, double *f)
-{
-  const int n = e->n;
-  const double *g = e->gradient + cell * (n + 1) * n;
-  double H[DVI__SOLID_ENTRIES] = {0}, P[DVI__SOLID_ENTRIES] = {0};
-  dvi__solid_strain(e, cell, u, H);
-  find_rest_stress(n, e->materials[e->material[cell]].rest, H, P);
-  for (int a = 0; a <= n; a++)
-    for (int i = 0; i < n; i++) {
-      f[a * n + i] = 0;
-      for (int j = 0; j < n; j++) f[a * n + i] -= e->volume[cell] * P[i * n + j] * g[a * n + j];
-    }
-}
-
 /* Functions of a share return as dvi__solid_force. That of forces is for several cells. */
 static int share_forces(const dvi_elastic *e, dvi__solid_share share, int64_t first, int count,
                         const double *u, double *f, int *failed)
@@ -45,7 +21,7 @@ static int share_forces(const dvi_elastic *e, dvi__solid_share share, int64_t fi
   }
   for (int c = 0; c < count; c++) {
     double rest[NUMBERS] = {0}, *own = f + c * numbers;
-    find_rest_force(e, first + c, u + c * numbers, rest);
+    dvi__solid_rest_force(e, first + c, u + c * numbers, rest);
     for (int k = 0; k < numbers; k++)
       own[k] = share == DVI__SOLID_STIFFNESS ? rest[k] : own[k] - rest[k];
   }
@@ -62,7 +38,7 @@ static int share_energy(const dvi_elastic *e, dvi__solid_share share, int64_t ce
     if (returned != 0 || share == DVI__SOLID_STORED) return returned;
   }
   double quadratic = 0;
-  find_rest_force(e, cell, u, f);
+  dvi__solid_rest_force(e, cell, u, f);
   for (int k = 0; k < (e->n + 1) * e->n; k++) quadratic -= f[k] * u[k] / 2;
   *energy = share == DVI__SOLID_STIFFNESS ? quadratic : *energy - quadratic;
   return 0;
@@ -265,7 +241,7 @@ dvi_status dvi__solid_make_pull(dvi__solid_system *s)
   for (int64_t c = 0; c < e->cells; c++) {
     double u[NUMBERS], f[NUMBERS] = {0}, energy;
     dvi__solid_gather(e, c, e->steady, u);
-    find_rest_force(e, c, u, f);
+    dvi__solid_rest_force(e, c, u, f);
     (void)share_energy(e, DVI__SOLID_STIFFNESS, c, u, &energy);
     for (int k = 0; k < (n + 1) * n; k++) f[k] = -f[k];
     dvi__solid_scatter(e, c, f, s->pull);

@@ -33,18 +33,24 @@ static double limit_of(const dvi__solid_avi *avi, double t)
   return t + roundings * fmax(fabs(t), fabs(avi->clock.t0));
 }
 
+/* Let the events since the last look up to a limit happen again, on a single thread. */
+static dvi__solid_halt redo(dvi__solid_avi *avi, double limit)
+{
+  dvi__solid_take_back(avi);
+  const dvi__solid_halt halt = dvi__solid_run(avi, limit);
+  dvi__solid_order(avi);
+  return halt;
+}
+
 /* Stand before the first event that fails up to a limit, found by a single thread. If none fails
  * again, the callback that did has changed its mind, and the march stands where it was. */
 static dvi_status stand_before(dvi__solid_avi *avi, double limit, dvi__solid_halt first)
 {
   const double before = avi->clock.t;
-  dvi__solid_take_back(avi);
-  const dvi__solid_halt again = dvi__solid_run(avi, limit);
+  const dvi__solid_halt again = redo(avi, limit);
   const int fails_again = again.returned != 0;
   const dvi__solid_halt halt = fails_again ? again : first;
-  dvi__solid_take_back(avi);
-  (void)dvi__solid_run(avi, fails_again ? nextafter(halt.t, -INFINITY) : limit_of(avi, before));
-  dvi__solid_order(avi);
+  (void)redo(avi, fails_again ? nextafter(halt.t, -INFINITY) : limit_of(avi, before));
   avi->clock.t = fmin(fmax(avi->clock.t, before), limit);
   return dvi__fail_in(refuse(avi, &halt), "%s: at t = %g", avi->method, halt.t);
 }
@@ -105,8 +111,9 @@ static dvi_status advance(dvi__solid_avi *avi, double t)
     DVI_TRY(check_nodes(avi));
     DVI_TRY(compare_energy(avi));
   }
+  const int64_t events = avi->clock.events;
   DVI_TRY(run(avi, t));
-  return check_nodes(avi);
+  return avi->clock.events > events ? check_nodes(avi) : DVI_OK;
 }
 
 /* What is not finite is taken back: to the last look, or to the time before. */
@@ -115,9 +122,11 @@ dvi_status dvi__solid_avi_advance(dvi__solid_avi *avi, double t)
   const double before = avi->clock.t;
   const dvi_status status = advance(avi, t);
   if (status != DVI_NOT_FINITE) return status;
-  dvi__solid_take_back(avi);
-  if (avi->clock.t >= before) return status;
-  (void)dvi__solid_run(avi, limit_of(avi, before));
-  avi->clock.t = before;
+  if (avi->kept_clock.t >= before) {
+    dvi__solid_take_back(avi);
+  } else {
+    (void)redo(avi, limit_of(avi, before));
+    avi->clock.t = before;
+  }
   return status;
 }

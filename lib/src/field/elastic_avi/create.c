@@ -61,14 +61,6 @@ static dvi_status allocate(dvi__solid_avi *s)
   return DVI_OK;
 }
 
-/* Whether a force, a load or a condition can fail in the course of a run. */
-static int can_fail(const dvi_elastic *e)
-{
-  int can = e->is_driven || (e->load_count > 0 && !e->has_steady_loads);
-  for (int i = 0; i < e->material_count; i++) can |= e->materials[i].law > DVI_ELASTIC_SVK;
-  return can;
-}
-
 static dvi_status make_calendar(dvi__solid_avi *s)
 {
   double rate = 0;
@@ -95,7 +87,6 @@ dvi_status dvi__solid_avi_create(const dvi_elastic *solid, const dvi__solid_requ
                         .is_free = request->is_free || request->is_queued,
                         .is_equal = request->is_equal,
                         .is_linear = request->is_linear,
-                        .may_fail = can_fail(solid),
                         .classes = plan.classes,
                         .shortest = plan.shortest,
                         .longest = plan.longest,

@@ -99,7 +99,7 @@ typedef struct dvi__solid_avi {
   uint8_t *node_kind, *cell_kind;
   double *step;  /* [cells] */
   double *decay; /* [vertices] rates, or empty */
-  int *viscous;  /* [cells] place in `stretch`, or -1. NULL if there are none */
+  int *viscous;  /* [cells] place in `stretch` of cells with a damping */
   int64_t viscous_count;
   int *meeting; /* [cells] place in `push` of cells that meet obstacles */
   int64_t pushes;
@@ -108,7 +108,6 @@ typedef struct dvi__solid_avi {
   int is_equal;        /* one step for all */
   int is_free;         /* events are taken from a calendar */
   int is_linear;       /* forces are those of small strains at rest */
-  int may_fail;        /* forces, loads or conditions */
   int classes;
   int64_t class_end[DVI__SOLID_CLASSES];
   double shortest, longest, bound, band;
@@ -144,7 +143,8 @@ static inline double dvi__solid_driven_energy(const dvi__solid_avi *avi, int64_t
 {
   const int kind = avi->node_kind[vertex];
   double square = 0;
-  for (int i = 0; i < avi->n && (kind & DVI__NODE_DRIVEN); i++)
+  if (!(kind & DVI__NODE_DRIVEN)) return 0;
+  for (int i = 0; i < avi->n; i++)
     if (kind & 1 << i) square += node->v[i] * node->v[i];
   return 0.5 * square / node->inverse;
 }
@@ -208,6 +208,14 @@ static inline void dvi__solid_fetch(const dvi__solid_avi *avi, int64_t c)
   __builtin_prefetch(avi->state.count + c, 1);
   __builtin_prefetch(avi->step + c);
   __builtin_prefetch(avi->cell_kind + c);
+}
+
+/* The class of a cell. */
+static inline int dvi__solid_class_of(const dvi__solid_avi *avi, int64_t c)
+{
+  int j = 0;
+  while (c >= avi->class_end[j]) j++;
+  return j;
 }
 
 /* The largest class whose steps end in a slot. */

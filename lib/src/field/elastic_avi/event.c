@@ -42,33 +42,13 @@ int dvi__solid_guide(const dvi__solid_avi *avi, int vertex, double t, dvi__solid
 
 /* ---- forces ---- */
 
-/* Add -V (C : grad w) grad N to f. */
-static void add_small_strain(const dvi__solid_avi *avi, int64_t c, double factor, const double *w,
-                             double *f)
-{
-  const dvi_elastic *e = avi->solid;
-  const int n = avi->n;
-  const int64_t cell = avi->name[c];
-  const double *gradient = e->gradient + cell * (n + 1) * n,
-               *rest = e->materials[e->material[cell]].rest;
-  double H[DVI__SOLID_ENTRIES] = {0};
-  for (int a = 0; a <= n; a++)
-    for (int i = 0; i < n; i++)
-      for (int j = 0; j < n; j++) H[i * n + j] += w[a * n + i] * gradient[a * n + j];
-  for (int i = 0; i < n; i++)
-    for (int j = 0; j < n; j++) {
-      double P = 0;
-      for (int k = 0; k < n * n; k++) P += rest[(i * n + j) * n * n + k] * H[k];
-      for (int a = 0; a <= n; a++)
-        f[a * n + i] -= factor * e->volume[cell] * P * gradient[a * n + j];
-    }
-}
-
 void dvi__solid_resist(const dvi__solid_avi *avi, int64_t c, const double *w, double *f)
 {
   const dvi_elastic *e = avi->solid;
+  const int64_t cell = avi->name[c];
   memset(f, 0, DVI__SOLID_NUMBERS * sizeof *f);
-  add_small_strain(avi, c, e->materials[e->material[avi->name[c]]].beta, w, f);
+  dvi__solid_rest_force(e, cell, w, f);
+  for (int k = 0; k < (avi->n + 1) * avi->n; k++) f[k] *= e->materials[e->material[cell]].beta;
 }
 
 int dvi__solid_pull(const dvi__solid_avi *avi, int64_t c, double t, const double *u, double *f,
@@ -77,8 +57,7 @@ int dvi__solid_pull(const dvi__solid_avi *avi, int64_t c, double t, const double
   const int numbers = (avi->n + 1) * avi->n;
   memset(load, 0, DVI__SOLID_NUMBERS * sizeof *load);
   if (avi->is_linear) {
-    memset(f, 0, DVI__SOLID_NUMBERS * sizeof *f);
-    add_small_strain(avi, c, 1, u, f);
+    dvi__solid_rest_force(avi->solid, avi->name[c], u, f);
     return 0;
   }
   const int returned = dvi__solid_force(avi->solid, avi->name[c], u, f);

@@ -25,7 +25,6 @@ typedef struct laws {
   dvi__solid_avi *avi;
   double *u, *rate; /* [vertices*n] the start */
   int n, momenta;   /* of which the first n are no turns */
-  int is_small;     /* turns are those of X */
 } laws;
 
 /* ---- what a solid has ---- */
@@ -99,26 +98,6 @@ static dvi_status begin(const laws *s)
 
 /* ---- what is measured ---- */
 
-/* Give the component k of m u', or from k = n on that of x cross m u' about the origin, and the sum
- * of the sizes of its terms. */
-static double momentum(const laws *s, int k, double *size)
-{
-  const dvi_elastic *e = s->solid;
-  const int n = s->n, turn = k - n, i = n == 3 ? (k + 1) % 3 : 0, j = n == 3 ? (k + 2) % 3 : 1;
-  double sum = 0;
-  *size = 0;
-  for (int64_t v = 0; v < e->vertices; v++) {
-    const double *u = s->avi->view->u + v * n, *X = e->point + v * n,
-                 *rate = s->avi->view->rate + v * n;
-    const double xi = X[i] + (s->is_small ? 0 : u[i]), xj = X[j] + (s->is_small ? 0 : u[j]),
-                 first = e->mass[v] * (turn < 0 ? rate[k] : xi * rate[j]),
-                 second = e->mass[v] * (turn < 0 ? 0 : -xj * rate[i]);
-    sum += first + second;
-    *size += fabs(first) + fabs(second);
-  }
-  return sum;
-}
-
 /* What has been seen at the start, and the largest changes beside the largest sizes. */
 typedef struct record {
   double momentum[MOMENTA], change[MOMENTA], size[MOMENTA];
@@ -135,7 +114,7 @@ static dvi_status look(const laws *s, int is_start, record *seen)
   seen->energy_size = fmax(seen->energy_size, e->kinetic + e->stored);
   for (int k = 0; k < s->momenta; k++) {
     double size;
-    const double now = momentum(s, k, &size);
+    const double now = dvi__solid_momentum(s->avi, k, &size);
     if (is_start) seen->momentum[k] = now;
     seen->change[k] = fmax(seen->change[k], fabs(now - seen->momentum[k]));
     seen->size[k] = fmax(seen->size[k], size);
@@ -179,10 +158,7 @@ dvi_status dvi_elastic_laws(const dvi_elastic *elastic, const dvi_march_options 
                                        "needed");
   *count = 0;
   DVI_TRY(dvi__solid_ask(elastic, options, &request));
-  laws s = {.solid = elastic,
-            .n = elastic->n,
-            .momenta = momenta_of(elastic),
-            .is_small = dvi__solid_is_linear(elastic)};
+  laws s = {.solid = elastic, .n = elastic->n, .momenta = momenta_of(elastic)};
   if (s.momenta == 0 && !has_energy(elastic)) return DVI_OK;
   DVI_TRY(dvi__solid_avi_create(elastic, &request, &s.avi));
   s.u = DVI_NEW(double, elastic->vertices * elastic->n);

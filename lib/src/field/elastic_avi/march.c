@@ -124,20 +124,6 @@ static const char *observable(const void *self, int i)
   return (avi->n == 3 ? in_space : in_plane)[what - MOMENTA];
 }
 
-/* The component k of m u', or about the origin of x x m u' from k = n on. */
-static double momentum(const dvi__solid_avi *avi, int k)
-{
-  const dvi_elastic *e = avi->solid;
-  const int n = avi->n, turn = k - n, i = n == 3 ? (turn + 1) % 3 : 0,
-            j = n == 3 ? (turn + 2) % 3 : 1;
-  double sum = 0;
-  for (int64_t v = 0; v < avi->vertices; v++) {
-    const double *u = avi->view->u + v * n, *X = e->point + v * n, *rate = avi->view->rate + v * n;
-    sum += e->mass[v] * (turn < 0 ? rate[k] : (X[i] + u[i]) * rate[j] - (X[j] + u[j]) * rate[i]);
-  }
-  return sum;
-}
-
 static dvi_status observe(const void *self, int i, double *value)
 {
   const dvi__solid_avi *avi = self;
@@ -150,7 +136,8 @@ static dvi_status observe(const void *self, int i, double *value)
                              e->load,
                              avi->view->growth,
                              avi->view->hits};
-  *value = what <= HITS ? energies[what] : momentum(avi, what - MOMENTA);
+  double size;
+  *value = what <= HITS ? energies[what] : dvi__solid_momentum(avi, what - MOMENTA, &size);
   return DVI_OK;
 }
 

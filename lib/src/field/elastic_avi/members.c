@@ -233,13 +233,6 @@ static dvi_status make_calendar(const dvi__solid_avi *avi, member *own)
   return dvi__calendar_create(own->count, avi->longest, rate, &own->calendar);
 }
 
-static int class_of(const dvi__solid_avi *avi, int64_t c)
-{
-  int j = 0;
-  while (c >= avi->class_end[j]) j++;
-  return j;
-}
-
 /* List the cells of a member, and number its edges. */
 static dvi_status list_cells(const dvi__solid_avi *avi, dvi__solid_members *all, int number,
                              const int *owner, const uint8_t *is_edge)
@@ -252,7 +245,7 @@ static dvi_status list_cells(const dvi__solid_avi *avi, dvi__solid_members *all,
   int64_t i = 0;
   for (int64_t c = 0; c < avi->active; c++) {
     if (owner[c] != number) continue;
-    const int j = class_of(avi, c);
+    const int j = dvi__solid_class_of(avi, c);
     own->cell[i] = (int)c;
     own->edge[i] = -1;
     if (is_edge[c]) {

@@ -49,6 +49,10 @@ dvi_status dvi__solid_avi_sample(const dvi__solid_avi *avi, int64_t count, const
 dvi_status dvi__solid_avi_see(const dvi__solid_avi *avi);
 dvi_status dvi__solid_avi_look(const dvi__solid_avi *avi);
 
+/* Give the component k of m u' of the view, or from k = n on that of x cross m u' about the origin,
+ * and the sum of the sizes of its terms. A linear solid knows turns of X alone in place of x. */
+double dvi__solid_momentum(const dvi__solid_avi *avi, int k, double *size);
+
 /* Put the section "elastic", and take it back. */
 void dvi__solid_avi_save(const dvi__solid_avi *avi, dvi__sections_writer *writer);
 dvi_status dvi__solid_avi_load(dvi__solid_avi *avi, const dvi__sections *sections);

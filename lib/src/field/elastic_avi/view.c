@@ -13,6 +13,7 @@
 #include <string.h>
 
 #include "core/status.h"
+#include "field/elastic/system.h"
 #include "field/elastic_avi/plan.h"
 #include "field/step/decay.h"
 
@@ -20,8 +21,7 @@
 static double time_of_cell(const dvi__solid_avi *avi, int64_t c)
 {
   if (avi->is_free) return dvi__solid_event_time(avi, c, avi->state.count[c]);
-  int j = 0;
-  while (c >= avi->class_end[j]) j++;
+  const int j = dvi__solid_class_of(avi, c);
   return dvi__solid_slot_time(avi, avi->clock.slot >> j << j);
 }
 
@@ -172,6 +172,24 @@ dvi_status dvi__solid_avi_look(const dvi__solid_avi *avi)
   return DVI_OK;
 }
 
+double dvi__solid_momentum(const dvi__solid_avi *avi, int k, double *size)
+{
+  const dvi_elastic *e = avi->solid;
+  const int n = avi->n, is_turn = k >= n, i = n == 3 ? (k + 1) % 3 : 0,
+            j = n == 3 ? (k + 2) % 3 : 1, is_small = dvi__solid_is_linear(e);
+  double sum = 0;
+  *size = 0;
+  for (int64_t v = 0; v < avi->vertices; v++) {
+    const double *u = avi->view->u + v * n, *X = e->point + v * n, *rate = avi->view->rate + v * n;
+    const double xi = X[i] + (is_small ? 0 : u[i]), xj = X[j] + (is_small ? 0 : u[j]),
+                 first = e->mass[v] * (is_turn ? xi * rate[j] : rate[k]),
+                 second = e->mass[v] * (is_turn ? -xj * rate[i] : 0);
+    sum += first + second;
+    *size += fabs(first) + fabs(second);
+  }
+  return sum;
+}
+
 /* A few values are computed by themselves, with the same bits. */
 dvi_status dvi__solid_avi_sample(const dvi__solid_avi *avi, int64_t count, const int *component,
                                  double *u, double *rate)
@@ -180,20 +198,19 @@ dvi_status dvi__solid_avi_sample(const dvi__solid_avi *avi, int64_t count, const
   if (component == NULL) count = avi->vertices * n;
   if (component == NULL && rate != NULL) DVI_TRY(dvi__solid_avi_look(avi));
   const int is_seen = avi->view->t == avi->clock.t;
+  double rates[DVI__SOLID_AXES] = {0};
+  dvi__solid_node node = {0};
+  int64_t seen = -1;
   for (int64_t k = 0; k < count; k++) {
-    const int64_t at = component != NULL ? component[k] : k;
-    double rates[DVI__SOLID_AXES];
-    dvi__solid_node node;
+    const int64_t at = component != NULL ? component[k] : k, vertex = at / n;
     if (is_seen && u != NULL) u[k] = avi->view->u[at];
     if (is_seen && rate != NULL) rate[k] = avi->view->rate[at];
-    if (!is_seen && u != NULL) {
-      DVI_TRY(see_node(avi, (int)(at / n), &node));
-      u[k] = node.u[at % n];
-    }
-    if (!is_seen && rate != NULL) {
-      DVI_TRY(see_rate(avi, (int)(at / n), rates));
-      rate[k] = rates[at % n];
-    }
+    if (is_seen) continue;
+    if (vertex != seen && u != NULL) DVI_TRY(see_node(avi, (int)vertex, &node));
+    if (vertex != seen && rate != NULL) DVI_TRY(see_rate(avi, (int)vertex, rates));
+    seen = vertex;
+    if (u != NULL) u[k] = node.u[at % n];
+    if (rate != NULL) rate[k] = rates[at % n];
   }
   return DVI_OK;
 }
