@@ -47,7 +47,6 @@ void dvi__calendar_clear(dvi__calendar *c, double origin)
   c->origin = origin;
   c->today = c->waiting = c->first = c->end = 0;
   c->is_open = 0;
-  c->soon = -1;
   for (int64_t i = 0; i < c->days; i++) c->head[i] = -1;
 }
 
@@ -121,7 +120,6 @@ static void open_day(dvi__calendar *c)
   for (int64_t i = *head, place = c->end; i >= 0; i = c->entry[i].link)
     c->event[--place] = (dvi__calendar_event){c->entry[i].t, i};
   *head = -1;
-  c->soon = c->head[(c->today + 1) & (c->days - 1)];
   c->waiting -= c->end;
   sort(c);
 }

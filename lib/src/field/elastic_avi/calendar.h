@@ -25,7 +25,6 @@ typedef struct dvi__calendar {
   int64_t today, days;         /* days since the origin, and a power of 2 */
   int64_t waiting;             /* events in lists */
   int64_t first, end;          /* of the events of today that have not happened */
-  int64_t soon;                /* a number of tomorrow's list, or -1 */
   int64_t *head;               /* [days] lists of numbers, -1 at their end */
   dvi__calendar_entry *entry;  /* [numbers] of lists */
   dvi__calendar_event *event;  /* [numbers] of today */
@@ -47,22 +46,10 @@ void dvi__calendar_put(dvi__calendar *calendar, double t, int64_t number);
 /* Return the next event, or NULL if there is none. */
 const dvi__calendar_event *dvi__calendar_next(dvi__calendar *calendar);
 
-/* Take the next event, after dvi__calendar_next. Meanwhile fetch tomorrow's list, whose numbers are
- * strewn over the memory. */
+/* Take the next event, after dvi__calendar_next. */
 static inline void dvi__calendar_take(dvi__calendar *calendar)
 {
   calendar->first++;
-  if (calendar->soon < 0) return;
-  calendar->soon = calendar->entry[calendar->soon].link;
-  if (calendar->soon >= 0) __builtin_prefetch(calendar->entry + calendar->soon);
-}
-
-/* Return the number of the event that is a few events after the next one, or -1 if that is not
- * known yet. */
-static inline int64_t dvi__calendar_ahead(const dvi__calendar *calendar, int events)
-{
-  const int64_t place = calendar->first + events;
-  return place < calendar->end ? calendar->event[place].number : -1;
 }
 
 #endif

@@ -24,8 +24,7 @@
 
 enum {
   DVI__SOLID_CLASSES = 31, /* steps are at most 2^30 times the shortest one */
-  DVI__SOLID_AXES = 3,
-  DVI__SOLID_AHEAD = 6 /* events for which memory is fetched in advance */
+  DVI__SOLID_AXES = 3
 };
 
 /* A node, in a line of the cache. In a plane the third components are 0. */
@@ -186,28 +185,6 @@ static inline double dvi__solid_slot_time(const dvi__solid_avi *avi, int64_t slo
 static inline double dvi__solid_event_time(const dvi__solid_avi *avi, int64_t c, int64_t count)
 {
   return avi->clock.t0 + (double)count * avi->step[c];
-}
-
-/* Fetch what says where the memory of a cell is, for dvi__solid_fetch. */
-static inline void dvi__solid_announce(const dvi__solid_avi *avi, int64_t c)
-{
-  __builtin_prefetch(avi->name + c);
-  __builtin_prefetch(avi->corner + c * (avi->n + 1));
-}
-
-/* Fetch what an event of a cell will need, which is strewn over the memory with free steps. */
-static inline void dvi__solid_fetch(const dvi__solid_avi *avi, int64_t c)
-{
-  const int n = avi->n, *corner = avi->corner + c * (n + 1);
-  const char *gradient = (const char *)(avi->solid->gradient + (int64_t)avi->name[c] * (n + 1) * n);
-  for (int a = 0; a <= n; a++) __builtin_prefetch(avi->state.node + corner[a], 1);
-  __builtin_prefetch(gradient);
-  __builtin_prefetch(gradient + 64);
-  __builtin_prefetch(avi->solid->volume + avi->name[c]);
-  __builtin_prefetch(avi->solid->material + avi->name[c]);
-  __builtin_prefetch(avi->state.count + c, 1);
-  __builtin_prefetch(avi->step + c);
-  __builtin_prefetch(avi->cell_kind + c);
 }
 
 /* The class of a cell. */

@@ -138,10 +138,6 @@ static void run_calendar(void *user, int number)
     const dvi__calendar_event *first = dvi__calendar_next(own->calendar);
     if (first == NULL || !(first->t <= r->limit)) return;
     const dvi__calendar_event next = *first;
-    const int64_t far = dvi__calendar_ahead(own->calendar, 2 * DVI__SOLID_AHEAD),
-                  near = dvi__calendar_ahead(own->calendar, DVI__SOLID_AHEAD);
-    if (far >= 0) dvi__solid_announce(r->avi, own->cell[far]);
-    if (near >= 0) dvi__solid_fetch(r->avi, own->cell[near]);
     const int cell = own->cell[next.number], edge = own->edge[next.number];
     if (!act(r, out, cell, edge, next.t, next.t)) return;
     const int64_t count = ++r->avi->state.count[cell];

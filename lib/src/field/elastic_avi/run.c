@@ -33,10 +33,6 @@ static dvi__solid_halt run_calendar(dvi__solid_avi *avi, double limit)
   for (;;) {
     const dvi__calendar_event next = *dvi__calendar_next(avi->calendar);
     if (!(next.t <= limit)) return (dvi__solid_halt){0};
-    const int64_t far = dvi__calendar_ahead(avi->calendar, 2 * DVI__SOLID_AHEAD),
-                  near = dvi__calendar_ahead(avi->calendar, DVI__SOLID_AHEAD);
-    if (far >= 0) dvi__solid_announce(avi, far);
-    if (near >= 0) dvi__solid_fetch(avi, near);
     const int returned = dvi__solid_act(avi, next.number, next.t);
     if (returned != 0) return (dvi__solid_halt){returned, next.number, next.t};
     dvi__calendar_take(avi->calendar);
