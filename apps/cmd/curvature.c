@@ -215,12 +215,6 @@ static int make_field(study *s)
 
 /* ---- tables ---- */
 
-static void add(result_table *rows, const char *name, double value)
-{
-  table_text(rows, name);
-  table_number(rows, value);
-}
-
 static double deficit_at(const study *s, int64_t hinge)
 {
   return hinge >= 0 ? s->deficit[hinge] : (double)NAN;
@@ -228,18 +222,11 @@ static double deficit_at(const study *s, int64_t hinge)
 
 static void add_sums(result_table *rows, const dvi_gauss_bonnet *sums)
 {
-  add(rows, "deficits", sums->deficits);
-  add(rows, "turning", sums->turning);
-  add(rows, "euler", (double)sums->euler);
-  add(rows, "two_pi_chi", 2 * pi * (double)sums->euler);
-  add(rows, "difference", sums->difference);
-}
-
-static int write_table(result_table *rows, const char *path)
-{
-  const bool good = table_good(rows) && table_write(rows, path);
-  table_destroy(&rows);
-  return good ? DONE : FAILED;
+  table_quantity(rows, "deficits", sums->deficits);
+  table_quantity(rows, "turning", sums->turning);
+  table_quantity(rows, "euler", (double)sums->euler);
+  table_quantity(rows, "two_pi_chi", 2 * pi * (double)sums->euler);
+  table_quantity(rows, "difference", sums->difference);
 }
 
 static int write_quantities(const study *s)
@@ -247,23 +234,23 @@ static int write_quantities(const study *s)
   static const table_column columns[] = {{"quantity", NULL}, {"value", "%.12g"}, {NULL, NULL}};
   if (s->request->csv == NULL) return DONE;
   result_table *rows = table_create(columns);
-  add(rows, "dimension", s->n);
-  add(rows, "hinges", (double)s->hinges);
-  add(rows, "inner_hinges", (double)s->inner);
+  table_quantity(rows, "dimension", s->n);
+  table_quantity(rows, "hinges", (double)s->hinges);
+  table_quantity(rows, "inner_hinges", (double)s->inner);
   if (s->n == 2) add_sums(rows, &s->sums);
-  add(rows, "deficit_min", deficit_at(s, s->least));
-  add(rows, "at_min", s->least >= 0 ? (double)s->least : (double)NAN);
-  add(rows, "deficit_max", deficit_at(s, s->most));
-  add(rows, "at_max", s->most >= 0 ? (double)s->most : (double)NAN);
-  add(rows, "holonomy_error", s->worst);
-  add(rows, "lift_error", s->lifted != NULL ? s->worst_lift : (double)NAN);
-  add(rows, "hinge_error", s->loosest);
+  table_quantity(rows, "deficit_min", deficit_at(s, s->least));
+  table_quantity(rows, "at_min", s->least >= 0 ? (double)s->least : (double)NAN);
+  table_quantity(rows, "deficit_max", deficit_at(s, s->most));
+  table_quantity(rows, "at_max", s->most >= 0 ? (double)s->most : (double)NAN);
+  table_quantity(rows, "holonomy_error", s->worst);
+  table_quantity(rows, "lift_error", s->lifted != NULL ? s->worst_lift : (double)NAN);
+  table_quantity(rows, "hinge_error", s->loosest);
   if (s->has_field) {
-    add(rows, "loops", (double)s->loops);
-    add(rows, "index_error", s->worst_index);
-    add(rows, "mismatch", s->mismatch);
+    table_quantity(rows, "loops", (double)s->loops);
+    table_quantity(rows, "index_error", s->worst_index);
+    table_quantity(rows, "mismatch", s->mismatch);
   }
-  return write_table(rows, s->request->csv);
+  return table_finish(&rows, s->request->csv) ? DONE : FAILED;
 }
 
 /* Write the vertices of a hinge with blanks between them. */
@@ -298,7 +285,7 @@ static int write_hinges(const study *s)
     table_number(rows, s->turn[h]);
     table_number(rows, s->spin[h]);
   }
-  return write_table(rows, s->request->hinges);
+  return table_finish(&rows, s->request->hinges) ? DONE : FAILED;
 }
 
 /* ---- words ---- */

@@ -29,12 +29,6 @@ static const char *plural_of(const dvi_mesh *mesh, int k)
   return dvi_mesh_kind(mesh) == DVI_BOXES ? boxes[k] : simplices[k];
 }
 
-static void add(result_table *rows, const char *name, double value)
-{
-  table_text(rows, name);
-  table_number(rows, value);
-}
-
 /* Add one row for each degree, as betti_0, betti_1 and so on. */
 static void add_degrees(result_table *rows, const dvi_mesh_report *report, const char *name,
                         double (*value)(const dvi_degree_report *))
@@ -42,7 +36,7 @@ static void add_degrees(result_table *rows, const dvi_mesh_report *report, const
   for (int k = 0; k <= report->dimension; k++) {
     char text[NAME_SIZE];
     (void)snprintf(text, sizeof text, "%s_%d", name, k);
-    add(rows, text, value(&report->degree[k]));
+    table_quantity(rows, text, value(&report->degree[k]));
   }
 }
 
@@ -89,18 +83,18 @@ static result_table *make_table(const dvi_mesh *mesh, const dvi_mesh_report *rep
               {"step", step_of},
               {"steps", steps_of}};
   result_table *rows = table_create(columns);
-  add(rows, "dimension", report->dimension);
-  add(rows, "space", report->space);
+  table_quantity(rows, "dimension", report->dimension);
+  table_quantity(rows, "space", report->space);
   for (int k = 0; k <= report->dimension; k++)
-    add(rows, plural_of(mesh, k), (double)report->degree[k].count);
-  add(rows, "manifold", report->is_manifold);
-  add(rows, "pinches", (double)report->pinches);
-  add(rows, "orientable", report->is_orientable);
-  add(rows, "quality", report->quality);
-  add(rows, "mean_quality", report->mean_quality);
-  add(rows, "worst_cell", (double)report->worst_cell);
-  add(rows, "dual_ratio", report->dual_ratio);
-  add(rows, "length", report->length);
+    table_quantity(rows, plural_of(mesh, k), (double)report->degree[k].count);
+  table_quantity(rows, "manifold", report->is_manifold);
+  table_quantity(rows, "pinches", (double)report->pinches);
+  table_quantity(rows, "orientable", report->is_orientable);
+  table_quantity(rows, "quality", report->quality);
+  table_quantity(rows, "mean_quality", report->mean_quality);
+  table_quantity(rows, "worst_cell", (double)report->worst_cell);
+  table_quantity(rows, "dual_ratio", report->dual_ratio);
+  table_quantity(rows, "length", report->length);
   for (size_t i = 0; i < sizeof each / sizeof *each; i++)
     add_degrees(rows, report, each[i].name, each[i].value);
   return rows;
@@ -218,9 +212,7 @@ static int audit(const mesh_request *r, const char *name, const dvi_mesh *mesh, 
   print_report(name, mesh, &report, r->csv != NULL && strcmp(r->csv, "-") == 0 ? stderr : stdout);
   if (r->csv == NULL || !is_last) return DONE;
   result_table *rows = make_table(mesh, &report);
-  const bool good = table_good(rows) && table_write(rows, r->csv);
-  table_destroy(&rows);
-  return good ? DONE : FAILED;
+  return table_finish(&rows, r->csv) ? DONE : FAILED;
 }
 
 static int repair(const mesh_request *r, dvi_mesh **mesh)

@@ -1,20 +1,16 @@
 /* dvi regge, which measures and solves complexes with lengths. */
-#define _POSIX_C_SOURCE 200809L
 #include <dvi/regge.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "cli/command.h"
 #include "cli/options.h"
 #include "cli/outputs.h"
-#include "cli/spelling.h"
 #include "csv/series.h"
 #include "csv/table.h"
-
-enum { NAME_SIZE = 48 };
+#include "load/open_mesh.h"
 
 /* The options. */
 typedef struct regge_request {
@@ -22,6 +18,7 @@ typedef struct regge_request {
   double lambda, strut;
   long evolve;
   bool solve, euclidean;
+  mesh_sizes sizes;
 } regge_request;
 
 /* A complex, and its lengths. */
@@ -36,30 +33,9 @@ typedef struct study {
 
 /* ---- opening ---- */
 
-static const char *generator_at(int k, const void *list)
-{
-  (void)list;
-  return dvi_mesh_generator_name(k);
-}
-
-static int open_mesh(const char *name, dvi_mesh **mesh)
-{
-  dvi_status status;
-  bool is_generator = false;
-  for (int i = 0; dvi_mesh_generator_name(i) != NULL; i++)
-    is_generator = is_generator || strcmp(dvi_mesh_generator_name(i), name) == 0;
-  if (!is_generator && strchr(name, '.') == NULL && access(name, F_OK) != 0) {
-    char hint[2 * NAME_SIZE];
-    return usage_error("regge: '%s' is neither a file nor a generator%s", name,
-                       suggestion(name, generator_at, NULL, hint, sizeof hint));
-  }
-  status = is_generator ? dvi_mesh_generate(name, NULL, mesh) : dvi_mesh_read(name, NULL, mesh);
-  return status == DVI_OK ? DONE : library_error(status);
-}
-
 static int open_study(study *s, const char *name)
 {
-  const int code = open_mesh(name, &s->mesh);
+  const int code = open_mesh("regge", &s->request->sizes, name, &s->mesh);
   if (code != DONE) return code;
   const dvi_regge_terms terms = {
       .size = sizeof terms, .mesh = s->mesh, .lambda = s->request->lambda};
@@ -100,7 +76,8 @@ static int64_t find_edge(const study *s, double from, double to)
   return -1;
 }
 
-static int take_lengths(study *s, const series_table *table, const char *path)
+/* `row` [edges] has the rows that edges have been found in, or 0. */
+static int take_lengths(study *s, const series_table *table, const char *path, int *row)
 {
   const double *from = table->column[0].value, *to = table->column[1].value,
                *length = table->column[2].value;
@@ -111,6 +88,10 @@ static int take_lengths(study *s, const series_table *table, const char *path)
                          from[i], to[i]);
     if (isnan(length[i]))
       return usage_error("regge: '%s': row %d has no number in column 'length'", path, i + 1);
+    if (row[edge] != 0)
+      return usage_error("regge: '%s': rows %d and %d are of one edge, of the vertices %g and %g",
+                         path, row[edge], i + 1, from[i], to[i]);
+    row[edge] = i + 1;
     s->length[edge] = length[i];
   }
   return DONE;
@@ -127,17 +108,12 @@ static int read_lengths(study *s)
   for (int i = 0; i < 3 && code == DONE; i++)
     if (series_want(&table, name[i]) < 0) code = FAILED;
   if (code == DONE) code = series_read("regge", path, &table);
-  if (code == DONE) code = take_lengths(s, &table, path);
+  int *row = calloc((size_t)s->edges, sizeof *row);
+  if (code == DONE)
+    code = row != NULL ? take_lengths(s, &table, path, row) : library_error(DVI_NO_MEMORY);
+  free(row);
   series_clear(&table);
   return code;
-}
-
-/* Write a table, and release it. */
-static int write_table(result_table *rows, const char *path)
-{
-  const bool good = table_good(rows) && table_write(rows, path != NULL ? path : "-");
-  table_destroy(&rows);
-  return good ? DONE : FAILED;
 }
 
 static int write_lengths(const study *s)
@@ -151,43 +127,37 @@ static int write_lengths(const study *s)
     table_number(rows, s->vertex[2 * e + 1]);
     table_number(rows, s->length[e]);
   }
-  return write_table(rows, s->request->write);
+  return table_finish(&rows, s->request->write) ? DONE : FAILED;
 }
 
 /* ---- quantities ---- */
 
-static void add(result_table *rows, const char *name, double value)
-{
-  table_text(rows, name);
-  table_number(rows, value);
-}
-
 static void add_measures(result_table *rows, const study *s, const dvi_regge_measures *m)
 {
   const int n = dvi_mesh_dimension(s->mesh);
-  add(rows, "dimension", n);
-  add(rows, "vertices", (double)dvi_mesh_count(s->mesh, 0));
-  add(rows, "edges", (double)s->edges);
-  add(rows, "cells", (double)dvi_mesh_count(s->mesh, n));
-  add(rows, "hinges", (double)m->hinges);
-  add(rows, "boundary_hinges", (double)m->boundary_hinges);
-  add(rows, "action", m->action);
-  add(rows, "volume", m->volume);
-  add(rows, "deficit_min", m->deficit_min);
-  add(rows, "deficit_max", m->deficit_max);
-  add(rows, "gradient_max", m->gradient_max);
-  add(rows, "schlaefli", m->schlaefli);
-  add(rows, "length_min", m->length_min);
-  add(rows, "length_max", m->length_max);
+  table_quantity(rows, "dimension", n);
+  table_quantity(rows, "vertices", (double)dvi_mesh_count(s->mesh, 0));
+  table_quantity(rows, "edges", (double)s->edges);
+  table_quantity(rows, "cells", (double)dvi_mesh_count(s->mesh, n));
+  table_quantity(rows, "hinges", (double)m->hinges);
+  table_quantity(rows, "boundary_hinges", (double)m->boundary_hinges);
+  table_quantity(rows, "action", m->action);
+  table_quantity(rows, "volume", m->volume);
+  table_quantity(rows, "deficit_min", m->deficit_min);
+  table_quantity(rows, "deficit_max", m->deficit_max);
+  table_quantity(rows, "gradient_max", m->gradient_max);
+  table_quantity(rows, "schlaefli", m->schlaefli);
+  table_quantity(rows, "length_min", m->length_min);
+  table_quantity(rows, "length_max", m->length_max);
 }
 
 static void add_report(result_table *rows, const dvi_regge_report *report)
 {
-  add(rows, "iterations", report->iterations);
-  add(rows, "residual", report->residual);
-  add(rows, "unknowns", (double)report->unknowns);
-  add(rows, "null_directions", (double)report->null_directions);
-  add(rows, "softness", report->softness);
+  table_quantity(rows, "iterations", report->iterations);
+  table_quantity(rows, "residual", report->residual);
+  table_quantity(rows, "unknowns", (double)report->unknowns);
+  table_quantity(rows, "null_directions", (double)report->null_directions);
+  table_quantity(rows, "softness", report->softness);
 }
 
 static int measure(study *s)
@@ -202,8 +172,7 @@ static int measure(study *s)
   result_table *rows = table_create(columns);
   add_measures(rows, s, &m);
   if (s->request->solve) add_report(rows, &report);
-  const int code = write_table(rows, s->request->csv);
-  return code == DONE ? write_lengths(s) : code;
+  return table_finish(&rows, s->request->csv) ? write_lengths(s) : FAILED;
 }
 
 /* ---- universes ---- */
@@ -237,7 +206,7 @@ static int write_universe(const study *s, const double *length, const double *co
     table_number(rows, de_sitter(r, t));
     table_number(rows, i < r->evolve && length[i + 1] > 0 ? constraint[i] : (double)NAN);
   }
-  return write_table(rows, r->csv);
+  return table_finish(&rows, r->csv) ? DONE : FAILED;
 }
 
 static int evolve(const study *s)
@@ -277,7 +246,7 @@ static const char *const details[] = {
     "sections are the complex, from its moment of rest, with Lambda > 0.\n",
     "Examples:\n"
     "  dvi regge cell-600\n"
-    "  dvi regge ball.msh --lengths curved.csv --solve --write flat.csv\n"
+    "  dvi regge ball --cells 2 --lengths curved.csv --solve --write flat.csv\n"
     "  dvi regge cell-600 --lambda 3 --evolve 20 --strut 0.05\n",
     NULL,
 };
@@ -313,6 +282,7 @@ static const option command_options[] = {
      OPTION_AT(regge_request, csv),
      .value = "FILE",
      .help = "write the rows to a file (default: standard output)"},
+    MESH_SIZE_OPTIONS(regge_request, sizes),
     {.name = NULL},
 };
 
@@ -335,18 +305,22 @@ static int check(const regge_request *r)
     return usage_error("regge: --evolve %ld: at most 1000000 layers are possible", r->evolve);
   if (r->evolve == 0 && r->euclidean)
     return usage_error("regge: --euclidean is for --evolve; all else is Euclidean anyway");
+  if (r->evolve == 0 && r->strut != 0)
+    return usage_error("regge: --strut is for --evolve, and is the length of struts between "
+                       "sections");
   const named_file files[] = {{"csv", r->csv}, {"write", r->write}};
   return outputs_distinct("regge", 2, files);
 }
 
 int regge_command(int argc, char **argv)
 {
-  regge_request r = {.strut = 0.05};
+  regge_request r = {.csv = "-"};
   const char *name;
   int code;
   if (!options_parse(&command, argc, argv, &r, &name, &code)) return code;
   code = check(&r);
   if (code != DONE) return code;
+  if (r.strut == 0) r.strut = 0.05;
   study s = {.request = &r};
   code = open_study(&s, name);
   if (code == DONE) code = read_lengths(&s);

@@ -98,9 +98,7 @@ static bool write_points(const resonance_findings *r)
     table_number(rows, point->error);
     table_number(rows, point->growth);
   }
-  const bool good = table_good(rows) && table_write(rows, r->request->csv);
-  table_destroy(&rows);
-  return good;
+  return table_finish(&rows, r->request->csv);
 }
 
 static bool resonance_draw(const resonance_findings *r)

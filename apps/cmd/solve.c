@@ -77,9 +77,7 @@ static bool write_values(const char *path, const dvi_mesh *mesh, const double *u
     for (int l = 0; l < space; l++) table_number(rows, dvi_mesh_points(mesh)[v * space + l]);
     table_number(rows, u[v]);
   }
-  const bool good = table_good(rows) && table_write(rows, path);
-  table_destroy(&rows);
-  return good;
+  return table_finish(&rows, path);
 }
 
 /* Newton's method of a field with a potential starts from the scene's start. */

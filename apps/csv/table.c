@@ -77,6 +77,12 @@ void table_text(result_table *table, const char *text)
     memcpy(c->text, text, size);
 }
 
+void table_quantity(result_table *table, const char *name, double value)
+{
+  table_text(table, name);
+  table_number(table, value);
+}
+
 bool table_good(const result_table *table)
 {
   if (table != NULL && !table->lost) return true;
@@ -139,6 +145,13 @@ bool table_write(const result_table *table, const char *path)
   if (!file_open(&csv, path)) return false;
   table_csv(table, csv.stream);
   return file_keep(&csv);
+}
+
+bool table_finish(result_table **table, const char *path)
+{
+  const bool good = table_good(*table) && table_write(*table, path);
+  table_destroy(table);
+  return good;
 }
 
 #pragma GCC diagnostic push

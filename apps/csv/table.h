@@ -24,6 +24,9 @@ void table_destroy(result_table **table);
 void table_number(result_table *table, double number);
 void table_text(result_table *table, const char *text);
 
+/** Fill the next two cells, of a table whose rows have a name and a number. */
+void table_quantity(result_table *table, const char *name, double value);
+
 /** Return whether all cells had memory. Complains if not. */
 bool table_good(const result_table *table);
 
@@ -41,6 +44,9 @@ void table_csv(const result_table *table, FILE *stream);
 /** Write the CSV into a file, whole or not at all. The path "-" is standard output. Complains and
  * returns false if it cannot be written. */
 bool table_write(const result_table *table, const char *path);
+
+/** Write the table as table_write does if all cells had memory, and destroy it in any case. */
+bool table_finish(result_table **table, const char *path);
 
 /** Print the rows first to last-1 from column `skip` on, aligned under their titles. Columns of CSV
  * files only are left out. */

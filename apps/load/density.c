@@ -274,8 +274,7 @@ static int write_rows(const density_views *views, const char *path)
     for (int d = 0; d < axes; d++) table_number(rows, v->x[d * v->points + i]);
     for (int k = 0; k < views->count; k++) table_number(rows, v->value[k * v->points + i]);
   }
-  const bool good = table_good(rows) && table_write(rows, path);
-  table_destroy(&rows);
+  const bool good = table_finish(&rows, path);
   free(column);
   return good ? DONE : FAILED;
 }

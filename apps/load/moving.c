@@ -47,7 +47,5 @@ int moving_write(const problem *scene, const char *path, const moving_views *vie
     for (int d = 0; d < axes; d++) table_number(rows, point[i * axes + d]);
     for (int c = 0; c < views->count; c++) table_number(rows, views->view[c].values[i]);
   }
-  const bool good = table_good(rows) && table_write(rows, path);
-  table_destroy(&rows);
-  return good ? DONE : FAILED;
+  return table_finish(&rows, path) ? DONE : FAILED;
 }

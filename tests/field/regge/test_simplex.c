@@ -215,16 +215,14 @@ END_TEST
 START_TEST(lengths_that_make_no_simplex_are_found)
 {
   dvi__measured_simplex m;
-  const int triangle[] = {0, 1, 2}, all[] = {0, 1, 2, 3};
   double length[] = {1, 1, 1, 1, 1, 1};
   length[0] = 2;
   ck_assert_int_eq(dvi__simplex_measure(3, length, &m), 0);
-  ck_assert_int_eq(dvi__face_exists(3, length, 2, triangle), 0);
+  ck_assert_int_eq(dvi__missing_face(3, length), 1 << 0 | 1 << 1 | 1 << 2);
   length[0] = 1.8; /* the triangles exist, but the tetrahedron would need less than sqrt(3) */
-  ck_assert_int_eq(dvi__face_exists(3, length, 2, triangle), 1);
-  ck_assert_int_eq(dvi__face_exists(3, length, 3, all), 0);
+  ck_assert_int_eq(dvi__missing_face(3, length), 15);
   length[0] = 1.7;
-  ck_assert_int_eq(dvi__face_exists(3, length, 3, all), 1);
+  ck_assert_int_eq(dvi__missing_face(3, length), 0);
 }
 END_TEST
 

@@ -7,6 +7,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "field/forms/star.h"
+#include "field/mesh/connected.h"
 #include "field/mesh/part.h"
 #include "field/mesh/volume.h"
 
@@ -24,12 +25,6 @@ typedef struct gluing {
 
 /* ---- groups ---- */
 
-static int root_of(int *parent, int i)
-{
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
-
 /* Join neighbours, and number the groups. */
 static void find_groups(gluing *g, const double *dual)
 {
@@ -41,8 +36,7 @@ static void find_groups(gluing *g, const double *dual)
   for (int64_t f = 0; f < mesh->count[g->n - 1]; f++) {
     const int *cell = mesh->coface + 2 * f;
     if (cell[1] < 0 || fabs(dual[f]) > negligible * most) continue;
-    const int a = root_of(g->group, cell[0]), b = root_of(g->group, cell[1]);
-    g->group[a > b ? a : b] = a > b ? b : a;
+    (void)dvi__join(g->group, cell[0], cell[1]);
   }
   for (int c = 0; c < cells; c++) { /* roots come before their members */
     const int root = g->group[c];

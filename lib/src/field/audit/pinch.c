@@ -5,24 +5,13 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "field/mesh/complex.h"
+#include "field/mesh/connected.h"
 
 typedef struct sets {
   const dvi_mesh *mesh;
   int corners, width; /* of an n-cell; sets of a cell: its corners, or pairs of them */
   int *parent;        /* [cells*width] */
 } sets;
-
-static int root_of(int *parent, int i)
-{
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
-
-static void join(int *parent, int a, int b)
-{
-  const int first = root_of(parent, a), second = root_of(parent, b);
-  parent[first > second ? first : second] = first < second ? first : second;
-}
 
 /* Find the corner of a cell at a vertex, or -1. */
 static int corner_at(const sets *s, int64_t cell, int vertex)
@@ -46,7 +35,7 @@ static void join_cells(sets *s, int64_t one, int64_t other)
                 low = same[a] > same[b] ? same[b] : same[a],
                 here = s->width > s->corners ? a * s->corners + b : a,
                 there = s->width > s->corners ? high * s->corners + low : same[a];
-      join(s->parent, (int)(one * s->width + here), (int)(other * s->width + there));
+      (void)dvi__join(s->parent, (int)(one * s->width + here), (int)(other * s->width + there));
     }
 }
 
@@ -73,7 +62,7 @@ static dvi_status count_vertices(sets *s, int64_t *count, int64_t *vertex)
   if (seen == NULL) return dvi__fail(DVI_NO_MEMORY, "audit: no memory");
   for (int i = 0; i < all; i++) {
     const int v = mesh->corner[mesh->n][i];
-    if (root_of(s->parent, i) != i) continue;
+    if (dvi__root_of(s->parent, i) != i) continue;
     *count += seen[v] == 1;
     if (seen[v] == 1) *vertex = v;
     if (seen[v] < 2) seen[v]++;
@@ -94,7 +83,7 @@ static dvi_status count_edges(sets *s, int64_t *count)
         const int i = (int)(cell * s->width) + a * s->corners + b,
                   *corner = mesh->corner[mesh->n] + cell * s->corners,
                   pair[] = {corner[a], corner[b]};
-        if (root_of(s->parent, i) != i) continue;
+        if (dvi__root_of(s->parent, i) != i) continue;
         const int64_t edge = dvi__complex_find(mesh, 1, pair);
         *count += seen[edge] == 1;
         if (seen[edge] < 2) seen[edge]++;

@@ -45,26 +45,20 @@ void dvi__cell_lengths(const dvi_mesh *mesh, const double *length, int64_t cell,
       of_cell[dvi__pair(mesh->n, i, j)] = length[number[1 << i | 1 << j]];
 }
 
-/* The face of the lowest dimension that does not exist is the clearest. */
 dvi_status dvi__refuse_lengths(const dvi_mesh *mesh, const double *length, int64_t cell)
 {
   int64_t number[DVI__CORNER_SETS];
   double of_cell[DVI__PAIRS];
+  int corner[DVI__SIMPLEX_CORNERS];
   dvi__number_faces(mesh, cell, number);
   dvi__cell_lengths(mesh, length, cell, of_cell);
-  for (int k = 2; k < mesh->n; k++)
-    for (int set = 1; set < 2 << mesh->n; set++) {
-      int corner[DVI__SIMPLEX_CORNERS];
-      if (dvi__corners_of_set(set, corner) != k + 1 ||
-          dvi__face_exists(mesh->n, of_cell, k, corner))
-        continue;
-      return dvi__fail(DVI_BAD_ARGUMENT,
-                       "curvature: the lengths of the edges of %s, a face of %s, are those of no "
-                       "%s, or of a flat one",
-                       dvi__name_cell(mesh, k, number[set]).text,
-                       dvi__name_cell(mesh, mesh->n, cell).text,
-                       dvi__degree_name(DVI_SIMPLICES, k));
-    }
+  const int set = dvi__missing_face(mesh->n, of_cell), k = dvi__corners_of_set(set, corner) - 1;
+  if (k >= 2 && k < mesh->n)
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "curvature: the lengths of the edges of %s, a face of %s, are those of no "
+                     "%s, or of a flat one",
+                     dvi__name_cell(mesh, k, number[set]).text,
+                     dvi__name_cell(mesh, mesh->n, cell).text, dvi__degree_name(DVI_SIMPLICES, k));
   return dvi__fail(DVI_BAD_ARGUMENT,
                    "curvature: the lengths of the edges of %s are those of no %s, or of a flat one",
                    dvi__name_cell(mesh, mesh->n, cell).text,

@@ -65,7 +65,9 @@ static dvi_status store(const dvi__surface *s, const int *depth, dvi_connection 
 dvi_status dvi__find_loops(dvi_connection *c)
 {
   dvi__surface s;
-  if (!dvi__is_surface(c->mesh)) return DVI_OK;
+  int is_surface;
+  DVI_TRY(dvi__is_surface(c->mesh, &is_surface));
+  if (!is_surface) return DVI_OK;
   DVI_TRY(dvi__surface_create(c->mesh, 0, &s));
   int *depth = DVI_NEW(int, c->mesh->count[2]);
   dvi_status status = DVI_NO_MEMORY;

@@ -14,12 +14,6 @@ static dvi_status no_memory(void)
 
 /* ---- nodes ---- */
 
-static int root_of(int *root, int vertex)
-{
-  while (root[vertex] != vertex) vertex = root[vertex] = root[root[vertex]];
-  return vertex;
-}
-
 /* Number the nodes by their lowest vertices. */
 static dvi_status find_nodes(dvi__surface *s)
 {
@@ -31,12 +25,11 @@ static dvi_status find_nodes(dvi__surface *s)
   for (int v = 0; v < vertices; v++) root[v] = v;
   for (int64_t i = 0; i < count; i++) {
     const int *end = s->mesh->corner[1] + 2 * (int64_t)rim[i];
-    const int a = root_of(root, end[0]), b = root_of(root, end[1]);
-    root[a > b ? a : b] = a > b ? b : a;
+    (void)dvi__join(root, end[0], end[1]);
     s->role[rim[i]] = DVI__EDGE_BOUNDARY;
   }
   for (int v = 0; v < vertices; v++) {
-    const int r = root_of(root, v);
+    const int r = dvi__root_of(root, v);
     s->node[v] = r == v ? (int)s->nodes++ : s->node[r];
   }
   dvi__release(root);
@@ -71,10 +64,8 @@ static dvi_status grow_nodes(dvi__surface *s)
   for (int i = 0; i < s->nodes; i++) root[i] = i;
   for (int64_t e = 0; e < s->mesh->count[1]; e++) {
     const int *end = s->mesh->corner[1] + 2 * e;
-    const int a = root_of(root, s->node[end[0]]), b = root_of(root, s->node[end[1]]);
-    if (s->role[e] != DVI__EDGE_FREE || a == b) continue;
-    root[a > b ? a : b] = a > b ? b : a;
-    s->role[e] = DVI__EDGE_OF_NODES;
+    if (s->role[e] == DVI__EDGE_FREE && dvi__join(root, s->node[end[0]], s->node[end[1]]))
+      s->role[e] = DVI__EDGE_OF_NODES;
   }
   dvi__release(root);
   return DVI_OK;
@@ -82,21 +73,24 @@ static dvi_status grow_nodes(dvi__surface *s)
 
 /* ---- all ---- */
 
-int dvi__is_surface(const dvi_mesh *mesh)
+dvi_status dvi__is_surface(const dvi_mesh *mesh, int *is_surface)
 {
-  if (mesh->n != 2 || mesh->kind != DVI_SIMPLICES || mesh->orientation == NULL) return 0;
+  *is_surface = 0;
+  if (mesh->n != 2 || mesh->kind != DVI_SIMPLICES || mesh->orientation == NULL) return DVI_OK;
   int *root = DVI_NEW(int, mesh->count[0]);
-  if (root == NULL) return 0;
+  if (root == NULL) return no_memory();
   dvi__find_components(mesh, root);
-  int is_connected = 1;
-  for (int64_t v = 0; v < mesh->count[0] && is_connected; v++) is_connected = root[v] == 0;
+  *is_surface = 1;
+  for (int64_t v = 0; v < mesh->count[0] && *is_surface; v++) *is_surface = root[v] == 0;
   dvi__release(root);
-  return is_connected;
+  return DVI_OK;
 }
 
 dvi_status dvi__check_surface(const dvi_mesh *mesh)
 {
-  if (dvi__is_surface(mesh)) return DVI_OK;
+  int is_surface;
+  DVI_TRY(dvi__is_surface(mesh, &is_surface));
+  if (is_surface) return DVI_OK;
   return dvi__fail(DVI_UNSUPPORTED,
                    "curvature: directions are for connected orientable surfaces of triangles, and "
                    "this mesh %s",

@@ -24,8 +24,8 @@ typedef struct dvi__surface {
   char *role;  /* [edges] */
 } dvi__surface;
 
-/* Tell whether the mesh is such a surface. */
-int dvi__is_surface(const dvi_mesh *mesh);
+/* Tell whether the mesh is such a surface. DVI_NO_MEMORY. */
+dvi_status dvi__is_surface(const dvi_mesh *mesh, int *is_surface);
 
 /* Refuse all other meshes. */
 dvi_status dvi__check_surface(const dvi_mesh *mesh);

@@ -36,7 +36,7 @@ static dvi_status add_angles(const dvi_regge *r, const double *length, dvi__regg
     for (int i = 0; i < r->pairs; i++) {
       const int h = r->hinge[c * r->pairs + i];
       sums->deficit[h] -= m.hinge[i].angle;
-      if (sums->size != NULL) sums->size[h] = m.hinge[i].face.volume;
+      sums->size[h] = m.hinge[i].face.volume;
     }
   }
   return DVI_OK;
@@ -108,8 +108,7 @@ dvi_status dvi__regge_evaluate(const dvi_regge *r, const double *length, dvi__re
   dvi__measured_simplex m;
   DVI_TRY(add_angles(r, length, sums));
   sums->action = -r->lambda * sums->volume;
-  if (sums->size != NULL)
-    for (int64_t h = 0; h < r->hinges; h++) sums->action += sums->size[h] * sums->deficit[h];
+  for (int64_t h = 0; h < r->hinges; h++) sums->action += sums->size[h] * sums->deficit[h];
   if (sums->gradient != NULL) memset(sums->gradient, 0, (size_t)r->edges * sizeof(double));
   if (sums->terms != NULL) memset(sums->terms, 0, (size_t)r->edges * sizeof(double));
   if (sums->hessian != NULL)

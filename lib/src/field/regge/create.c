@@ -4,7 +4,6 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "field/mesh/complex.h"
 #include "field/mesh/volume.h"
 #include "field/regge/regge.h"
 
@@ -15,25 +14,17 @@ static dvi_status no_memory(void)
 
 /* ---- edges and hinges ---- */
 
-/* Give the number of the face of a cell with these corners, of which there are k + 1. */
-static int face_of(const dvi_mesh *mesh, int k, const int *vertex, const int *corner)
-{
-  int found[DVI__CORNERS_OF_SIMPLEX];
-  for (int i = 0; i <= k; i++) found[i] = vertex[corner[i]];
-  return (int)dvi__complex_find(mesh, k, found);
-}
-
 static void number_faces(dvi_regge *r, int64_t cell)
 {
-  const int n = r->n, *vertex = r->mesh->corner[n] + cell * (n + 1);
+  const int n = r->n, whole = (2 << n) - 1;
+  int64_t number[DVI__CORNER_SETS];
+  dvi__number_faces(r->mesh, cell, number);
   for (int a = 0; a <= n; a++)
     for (int b = a + 1; b <= n; b++) {
       const int64_t at = cell * r->pairs + dvi__pair(n, a, b);
-      int others[DVI__CORNERS_OF_SIMPLEX], count = 0;
-      for (int i = 0; i <= n; i++)
-        if (i != a && i != b) others[count++] = i;
-      r->edge[at] = face_of(r->mesh, 1, vertex, (const int[]){a, b});
-      r->hinge[at] = face_of(r->mesh, n - 2, vertex, others);
+      const int pair = 1 << a | 1 << b;
+      r->edge[at] = (int)number[pair];
+      r->hinge[at] = (int)number[whole & ~pair];
       r->owner[r->hinge[at]] = at;
     }
 }
@@ -46,82 +37,22 @@ static void mark_boundary(const dvi_mesh *mesh, int k, unsigned char *marked, in
 
 /* ---- the pattern ---- */
 
-/* The cells at each edge. */
-typedef struct stars {
-  int64_t *start; /* [edges+1] */
-  int *cell;
-  int *seen;  /* [edges] the last edge, plus 1, in whose row an edge was found */
-  int *found; /* [edges] */
-} stars;
-
-static void list_stars(const dvi_regge *r, stars *s)
-{
-  const int64_t places = r->cells * r->pairs;
-  for (int64_t i = 0; i < places; i++) s->start[r->edge[i] + 1]++;
-  for (int64_t e = 0; e < r->edges; e++) s->start[e + 1] += s->start[e];
-  for (int64_t i = 0; i < places; i++) s->cell[s->start[r->edge[i]]++] = (int)(i / r->pairs);
-  for (int64_t e = r->edges; e > 0; e--) s->start[e] = s->start[e - 1];
-  s->start[0] = 0;
-}
-
-static void sort(int count, int *number)
-{
-  for (int i = 1; i < count; i++) {
-    const int next = number[i];
-    int at = i;
-    for (; at > 0 && number[at - 1] > next; at--) number[at] = number[at - 1];
-    number[at] = next;
-  }
-}
-
-/* Find the columns of row e, ascending. Returns their number. */
-static int find_row(const dvi_regge *r, stars *s, int64_t e)
-{
-  int count = 0;
-  for (int64_t i = s->start[e]; i < s->start[e + 1]; i++)
-    for (int p = 0; p < r->pairs; p++) {
-      const int f = r->edge[(int64_t)s->cell[i] * r->pairs + p];
-      if (s->seen[f] == (int)e + 1) continue;
-      s->seen[f] = (int)e + 1;
-      s->found[count++] = f;
-    }
-  sort(count, s->found);
-  return count;
-}
-
-static dvi_status fill_pattern(dvi_regge *r, stars *s)
-{
-  int64_t entries = 0;
-  list_stars(r, s);
-  for (int64_t e = 0; e < r->edges; e++) entries += find_row(r, s, e);
-  if (entries > INT_MAX / 2)
-    return dvi__fail(DVI_BAD_SIZE, "regge: an int cannot number %lld entries of the Hessian",
-                     (long long)entries);
-  DVI_TRY(dvi__csr_allocate(r->edges, r->edges, entries, &r->pattern));
-  memset(s->seen, 0, (size_t)r->edges * sizeof *s->seen);
-  for (int64_t e = 0, at = 0; e < r->edges; e++) {
-    const int count = find_row(r, s, e);
-    memcpy(r->pattern.column + at, s->found, (size_t)count * sizeof(int));
-    at += count;
-    r->pattern.start[e + 1] = at;
-  }
-  return DVI_OK;
-}
-
+/* Edges of one simplex are coupled, as the incidence B of cells and edges has them in B^T B. */
 static dvi_status make_pattern(dvi_regge *r)
 {
-  stars s = {.start = DVI_NEW(int64_t, r->edges + 1),
-             .cell = DVI_NEW(int, r->cells * r->pairs),
-             .seen = DVI_NEW(int, r->edges),
-             .found = DVI_NEW(int, r->edges)};
-  dvi_status status = s.start != NULL && s.cell != NULL && s.seen != NULL && s.found != NULL
-                          ? fill_pattern(r, &s)
-                          : no_memory();
-  dvi__release(s.start);
-  dvi__release(s.cell);
-  dvi__release(s.seen);
-  dvi__release(s.found);
-  return status;
+  const int64_t places = r->cells * r->pairs;
+  int8_t *one = DVI_NEW(int8_t, places);
+  if (one == NULL) return no_memory();
+  memset(one, 1, (size_t)places);
+  const dvi_matrix B = {
+      .rows = r->cells, .columns = r->edges, .width = r->pairs, .column = r->edge, .sign = one};
+  const dvi_status status = dvi__csr_transposed_product(&B, &B, &r->pattern);
+  dvi__release(one);
+  if (status != DVI_OK) return status;
+  const int64_t entries = r->pattern.start[r->edges];
+  if (entries <= INT_MAX / 2) return DVI_OK;
+  return dvi__fail(DVI_BAD_SIZE, "regge: an int cannot number %lld entries of the Hessian",
+                   (long long)entries);
 }
 
 /* ---- the complex ---- */

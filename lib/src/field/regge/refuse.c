@@ -25,16 +25,20 @@ static void list_lengths(int n, const double *length, int k, const int *corner, 
     }
 }
 
-static dvi_status refuse_face(const dvi_regge *r, int64_t cell, const double *length, int k,
-                              const int *corner)
+static dvi_status refuse_cell(const dvi_regge *r, int64_t cell, const double *length)
 {
-  const int *vertex = r->mesh->corner[r->n] + cell * (r->n + 1);
-  int found[DVI__CORNERS_OF_SIMPLEX];
+  const int n = r->n, set = dvi__missing_face(n, length),
+            *vertex = r->mesh->corner[n] + cell * (n + 1);
+  int64_t number[DVI__CORNER_SETS];
+  int corner[DVI__SIMPLEX_CORNERS];
   char list[LIST_SIZE];
-  for (int i = 0; i <= k; i++) found[i] = vertex[corner[i]];
-  const int64_t face = k < r->n ? dvi__complex_find(r->mesh, k, found) : cell;
-  const dvi__cell_name name = dvi__name_cell(r->mesh, k, face);
-  list_lengths(r->n, length, k, corner, vertex, list);
+  if (set == 0)
+    return dvi__fail(DVI_BAD_ARGUMENT, "regge: %s has no volume",
+                     dvi__name_cell(r->mesh, n, cell).text);
+  dvi__number_faces(r->mesh, cell, number);
+  const int k = dvi__corners_of_set(set, corner) - 1;
+  const dvi__cell_name name = dvi__name_cell(r->mesh, k, number[set]);
+  list_lengths(n, length, k, corner, vertex, list);
   if (k == 2)
     return dvi__fail(DVI_BAD_ARGUMENT,
                      "regge: %s does not exist with the lengths %s: each side must be shorter than "
@@ -44,21 +48,6 @@ static dvi_status refuse_face(const dvi_regge *r, int64_t cell, const double *le
                    "regge: %s does not exist in Euclidean space with the lengths %s, although its "
                    "faces do: its volume would not be above 0",
                    name.text, list);
-}
-
-/* Find the face of lowest dimension that does not exist. */
-static dvi_status refuse_cell(const dvi_regge *r, int64_t cell, const double *length)
-{
-  for (int k = 2; k <= r->n; k++)
-    for (unsigned set = 0; set < 1U << (r->n + 1); set++) {
-      int corner[DVI__CORNERS_OF_SIMPLEX], count = 0;
-      for (int i = 0; i <= r->n; i++)
-        if (set >> i & 1) corner[count++] = i;
-      if (count == k + 1 && !dvi__face_exists(r->n, length, k, corner))
-        return refuse_face(r, cell, length, k, corner);
-    }
-  const dvi__cell_name name = dvi__name_cell(r->mesh, r->n, cell);
-  return dvi__fail(DVI_BAD_ARGUMENT, "regge: %s has no volume", name.text);
 }
 
 static dvi_status refuse_length(const dvi_regge *r, int64_t edge, double length)

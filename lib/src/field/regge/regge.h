@@ -24,7 +24,7 @@ struct dvi_regge {
 typedef struct dvi__regge_sums {
   double action, volume;
   double *deficit;  /* [hinges] eps_h, always asked for */
-  double *size;     /* [hinges] |h| */
+  double *size;     /* [hinges] |h|, always asked for */
   double *gradient; /* [edges] */
   double *terms;    /* [edges] the sums of the sizes of the gradient's terms, of which roundings
                      * cannot be told. Needs `gradient` */

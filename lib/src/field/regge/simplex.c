@@ -7,7 +7,7 @@
 #include "num/simd/fused.h"
 
 typedef dvi__twofold square_matrix[DVI_MESH_DIMENSION_MAX][DVI_MESH_DIMENSION_MAX];
-typedef dvi__twofold product_matrix[DVI__CORNERS_OF_SIMPLEX][DVI__CORNERS_OF_SIMPLEX];
+typedef dvi__twofold product_matrix[DVI__SIMPLEX_CORNERS][DVI__SIMPLEX_CORNERS];
 
 /* A simplex is flat if an edge leaves no more than this part of its square beside the others. Its
  * products then have no digit left, with those of rounded numbers of twice the digits. */
@@ -92,7 +92,7 @@ FUSED static double find_products(const scaled_lengths *s, int k, const int *cor
                                   product_matrix P)
 {
   square_matrix G;
-  int others[DVI__CORNERS_OF_SIMPLEX], count = 0;
+  int others[DVI__SIMPLEX_CORNERS], count = 0;
   const int slot = find_origin(s, k, corner), origin = corner[slot];
   for (int i = 0; i <= k; i++)
     if (i != slot) others[count++] = corner[i];
@@ -122,11 +122,22 @@ static void round_products(const scaled_lengths *s, int k, double determinant, p
     for (int j = 0; j <= s->n; j++) products->P[i][j] = P[i][j].head / s->scale / s->scale;
 }
 
-int dvi__face_exists(int n, const double *length, int k, const int *corner)
+static int face_exists(int n, const double *length, int k, const int *corner)
 {
   product_matrix P;
   const scaled_lengths s = scale_lengths(n, length);
   return find_products(&s, k, corner, P) > 0;
+}
+
+int dvi__missing_face(int n, const double *length)
+{
+  for (int k = 2; k <= n; k++)
+    for (int set = 1; set < 2 << n; set++) {
+      int corner[DVI__SIMPLEX_CORNERS];
+      if (dvi__corners_of_set(set, corner) == k + 1 && !face_exists(n, length, k, corner))
+        return set;
+    }
+  return 0;
 }
 
 /* ---- hinges ---- */
@@ -155,7 +166,7 @@ static void measure_hinge(const scaled_lengths *s, product_matrix P, int a, int 
                           dvi__hinge *hinge)
 {
   product_matrix of_face;
-  int corner[DVI__CORNERS_OF_SIMPLEX], count = 0;
+  int corner[DVI__SIMPLEX_CORNERS], count = 0;
   for (int i = 0; i <= s->n; i++)
     if (i != a && i != b) corner[count++] = i;
   memset(of_face, 0, sizeof of_face);

@@ -14,10 +14,9 @@
  *     d theta/ds_ij = -(sin theta)/2 Re(e^{i theta} z_i z_j). */
 #ifndef DVI_FIELD_REGGE_SIMPLEX_H
 #define DVI_FIELD_REGGE_SIMPLEX_H
-#include <dvi/mesh.h>
+#include "field/mesh/faces.h"
 
 enum {
-  DVI__CORNERS_OF_SIMPLEX = DVI_MESH_DIMENSION_MAX + 1,
   DVI__PAIRS = 10 /* of corners of a 4-simplex: its edges, and its hinges by what they lack */
 };
 
@@ -37,14 +36,14 @@ static inline int dvi__pair(int n, int i, int j)
  * some corners of another one. The rows of other corners are 0. */
 typedef struct dvi__simplex_products {
   double volume;
-  double P[DVI__CORNERS_OF_SIMPLEX][DVI__CORNERS_OF_SIMPLEX];
+  double P[DVI__SIMPLEX_CORNERS][DVI__SIMPLEX_CORNERS];
 } dvi__simplex_products;
 
 /* A hinge, the face of dimension n - 2 that lacks two corners a < b. */
 typedef struct dvi__hinge {
   dvi__simplex_products face; /* its volume is 1 for n = 2, where it is a vertex */
   double angle, sine, cosine; /* of the dihedral angle, 0 < angle < pi */
-  double x[DVI__CORNERS_OF_SIMPLEX], y[DVI__CORNERS_OF_SIMPLEX]; /* z_i */
+  double x[DVI__SIMPLEX_CORNERS], y[DVI__SIMPLEX_CORNERS]; /* z_i */
 } dvi__hinge;
 
 /* A simplex of dimension 2 to 4. Pairs number its edges, and its hinges by the corners that they
@@ -60,8 +59,9 @@ typedef struct dvi__measured_simplex {
  * Euclidean space, or only a flat one. */
 int dvi__simplex_measure(int n, const double *length, dvi__measured_simplex *simplex);
 
-/* Tell whether the face with k + 1 of the corners, ascending, exists, for 2 <= k <= n. */
-int dvi__face_exists(int n, const double *length, int k, const int *corner);
+/* Return the set of corners of the face of lowest dimension that does not exist, which is the
+ * clearest one to name, or 0 if all do. */
+int dvi__missing_face(int n, const double *length);
 
 /* First derivatives [pairs] by the lengths, of the volume, of hinge h and of its angle. */
 void dvi__volume_slopes(const dvi__measured_simplex *simplex, double *slope);

@@ -208,8 +208,8 @@ static dvi_status find_step(search *s)
   return dvi__linear_solve(s->linear, s->rhs);
 }
 
-/* Halve the step until |g| falls. Returns whether it does, and keeps the last refusal of lengths in
- * *refused. */
+/* Halve the step until |g| falls. Tells whether it does, and keeps the last refusal of lengths in
+ * *refused. Of a whole step, which most are, the Hessian is computed beside the gradient. */
 static dvi_status search_line(search *s, int *falls, dvi_status *refused)
 {
   const double before = s->size;
@@ -218,17 +218,16 @@ static dvi_status search_line(search *s, int *falls, dvi_status *refused)
   for (int i = 0; i < HALVINGS; i++, part /= 2) {
     memcpy(s->trial, s->length, (size_t)s->regge->edges * sizeof *s->trial);
     for (int64_t u = 0; u < s->unknowns; u++) s->trial[s->edge[u]] -= part * s->rhs[2 * u];
-    const dvi_status status = evaluate(s, s->trial, 0);
+    const dvi_status status = evaluate(s, s->trial, i == 0);
     if (status == DVI_BAD_ARGUMENT) *refused = status;
     if (status != DVI_OK && status != DVI_BAD_ARGUMENT) return status;
     *falls = status == DVI_OK && s->size < (1 - least_fall * part) * before;
     if (!*falls) continue;
     if (i == 0 && s->size > slow * before) s->damping *= relief;
     memcpy(s->length, s->trial, (size_t)s->regge->edges * sizeof *s->trial);
-    return DVI_OK;
+    return i == 0 ? DVI_OK : evaluate(s, s->length, 1);
   }
-  s->size = before;
-  return DVI_OK;
+  return evaluate(s, s->length, 1);
 }
 
 /* The sum of l_e dS/dl_e is (n-2) S without Lambda. */
@@ -275,7 +274,6 @@ static dvi_status iterate(search *s, int most, int *iterations)
     DVI_TRY(factor(s, s->size, 1));
     DVI_TRY(find_step(s));
     DVI_TRY(search_line(s, &falls, &refused));
-    DVI_TRY(evaluate(s, s->length, 1));
   }
   if (s->size <= floor_part * s->terms) return DVI_OK;
   return refuse(s, *iterations, refused);
