@@ -116,11 +116,11 @@ static dvi_status add_stresses(const dvi_elastic *solid, const double *u, double
   const dvi_mesh *mesh = dvi_elastic_mesh(solid);
   const int n = dvi_mesh_dimension(mesh);
   const int64_t cells = dvi_mesh_count(mesh, n);
-  dvi_status status = dvi_elastic_stress(solid, u, work);
+  dvi_status status = dvi_elastic_stress(solid, 0, NULL, u, work);
   if (status != DVI_OK) return status;
   widen(n, 2, cells, work, to);
   views->view[views->count++] = (dvi_view){"stress", to, 9, n};
-  status = dvi_elastic_von_mises(solid, u, to + 9 * cells);
+  status = dvi_elastic_von_mises(solid, 0, NULL, u, to + 9 * cells);
   if (status == DVI_UNSUPPORTED) return DVI_OK;
   views->view[views->count++] = (dvi_view){"von_mises", to + 9 * cells, 1, n};
   return status;
@@ -159,18 +159,12 @@ int elastic_views_of_state(const problem *scene, double t, const double *q, cons
 {
   const dvi_elastic *solid = elastic_of(scene);
   const dvi_mesh *mesh = dvi_elastic_mesh(solid);
-  const int n = dvi_mesh_dimension(mesh);
-  const size_t numbers = (size_t)dvi_mesh_count(mesh, 0) * (size_t)n;
-  const double *mass = dvi_elastic_masses(solid);
-  int64_t unknowns;
-  const int *unknown = dvi_elastic_unknowns(solid, &unknowns);
-  double *u = calloc(3 * numbers, sizeof *u);
+  const size_t numbers = (size_t)dvi_mesh_count(mesh, 0) * (size_t)dvi_mesh_dimension(mesh);
+  double *u = calloc(2 * numbers, sizeof *u);
   *views = (elastic_views){.count = 0};
   if (u == NULL) return out_of_memory();
-  double *rate = u + numbers, *v = rate + numbers;
-  for (size_t i = 0; i < numbers; i++)
-    if (unknown[i] >= 0) v[unknown[i]] = p[unknown[i]] / mass[i / (size_t)n];
-  const dvi_status status = dvi_elastic_lift(solid, t, q, v, u, rate);
+  double *rate = u + numbers;
+  const dvi_status status = dvi_elastic_lift(solid, t, q, p, u, rate);
   const int code = status == DVI_OK ? elastic_views_make(scene, u, rate, views)
                                     : library_error(status);
   free(u);

@@ -150,14 +150,14 @@ const int *dvi_elastic_unknowns(const dvi_elastic *elastic, int64_t *unknowns);
 const double *dvi_elastic_masses(const dvi_elastic *elastic);
 
 /** Give displacements and rates [vertices*n], with the given ones at time t, of coordinates and
- *  velocities [unknowns].
+ *  momenta [unknowns].
  *
- *  @param q, v     may be NULL for 0
+ *  @param q, p     may be NULL for 0
  *  @param u, rate  may each be NULL
  *  @retval DVI_BAD_ARGUMENT     the solid is missing
  *  @retval DVI_CALLBACK_FAILED  a displacement failed
  *  @retval DVI_NOT_FINITE       a displacement is not finite */
-dvi_status dvi_elastic_lift(const dvi_elastic *elastic, double t, const double *q, const double *v,
+dvi_status dvi_elastic_lift(const dvi_elastic *elastic, double t, const double *q, const double *p,
                             double *u, double *rate);
 
 /** Give coordinates, velocities and momenta [unknowns] of displacements and rates [vertices*n],
@@ -176,18 +176,24 @@ void dvi_elastic_project(const dvi_elastic *elastic, const double *u, const doub
 dvi_status dvi_elastic_energy(const dvi_elastic *elastic, double t, const double *u,
                               const double *rate, const char *part, dvi_elastic_energies *energies);
 
-/** Give Cauchy's stress P F^T/J of each n-cell, [cells*n*n], row by row. That of the linear law is
- *  P.
+/** Give Cauchy's stress P F^T/J of n-cells. That of the linear law is P.
  *
- *  @retval (others)  as dvi_elastic_energy */
-dvi_status dvi_elastic_stress(const dvi_elastic *elastic, const double *u, double *stress);
+ *  @param      count   number of cells, if `cell` is given
+ *  @param      cell    [count] n-cells. NULL for all
+ *  @param[out] stress  [count*n*n] or [cells*n*n], row by row
+ *  @retval DVI_BAD_ARGUMENT  there is no such cell, or an argument is missing
+ *  @retval (others)          as dvi_elastic_energy */
+dvi_status dvi_elastic_stress(const dvi_elastic *elastic, int64_t count, const int *cell,
+                              const double *u, double *stress);
 
-/** Give von Mises' stress sqrt(3/2 s:s) of each n-cell, [cells], with the deviator s of Cauchy's
- *  stress. In a plane the stress across it, by which the strain is plane, is one of them.
+/** Give von Mises' stress sqrt(3/2 s:s) of n-cells, with the deviator s of Cauchy's stress. In a
+ *  plane the stress across it, by which the strain is plane, is one of them.
  *
+ *  @param[out] stress  [count] or [cells]
  *  @retval DVI_UNSUPPORTED  in a plane a stored energy that is given does not tell that stress
- *  @retval (others)         as dvi_elastic_energy */
-dvi_status dvi_elastic_von_mises(const dvi_elastic *elastic, const double *u, double *stress);
+ *  @retval (others)         as dvi_elastic_stress */
+dvi_status dvi_elastic_von_mises(const dvi_elastic *elastic, int64_t count, const int *cell,
+                                 const double *u, double *stress);
 
 /** Bound the largest angular frequency at rest from above, within 0.1 percent. verlet is stable
  *  with steps below 2/omega near rest.

@@ -185,15 +185,7 @@ int dvi__solid_gather_unknowns(const dvi_elastic *e, int64_t cell, double t, con
     return 0;
   }
   for (int a = 0; a <= n; a++) {
-    int is_driven = 0;
-    for (int i = 0; i < n; i++) {
-      const int64_t component = (int64_t)vertex[a] * n + i;
-      const int k = e->unknown[component];
-      u[a * n + i] = k >= 0 ? q[k] : e->steady[component];
-      is_driven |= e->is_driven && dvi__solid_is_driven(e, component);
-    }
-    if (!is_driven) continue;
-    const int returned = dvi__solid_given(e, vertex[a], t, u + a * n, NULL);
+    const int returned = dvi__solid_place(e, vertex[a], t, q, u + a * n, NULL);
     if (returned != 0) return -abs(returned);
   }
   return 0;
@@ -205,11 +197,8 @@ int dvi__solid_driven_rates(const dvi_elastic *e, int64_t cell, double t, double
   int found = 0;
   for (int a = 0; a <= n; a++) {
     double u[DVI_ELASTIC_DIMENSION_MAX], *own = rate + a * n;
-    int is_driven = 0;
-    for (int i = 0; i < n; i++) {
-      own[i] = 0;
-      is_driven |= dvi__solid_is_driven(e, (int64_t)vertex[a] * n + i);
-    }
+    const int is_driven = dvi__solid_node_is_driven(e, vertex[a]);
+    for (int i = 0; i < n; i++) own[i] = 0;
     const int returned = is_driven ? dvi__solid_given(e, vertex[a], t, u, own) : 0;
     if (returned != 0) return -abs(returned);
     found |= is_driven;

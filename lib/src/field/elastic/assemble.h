@@ -46,4 +46,26 @@ static inline int dvi__solid_is_driven(const dvi_elastic *e, int64_t component)
   return c >= 0 && e->conditions[c].displacement != NULL && !e->conditions[c].is_steady;
 }
 
+/* Tell if a component of it does. */
+static inline int dvi__solid_node_is_driven(const dvi_elastic *e, int64_t vertex)
+{
+  int is_driven = 0;
+  for (int i = 0; i < e->n && e->is_driven; i++)
+    is_driven |= dvi__solid_is_driven(e, vertex * e->n + i);
+  return is_driven;
+}
+
+/* Give the displacement of a node at coordinates q, NULL for 0, and time t, and its given rates,
+ * which stay where they are unknown or 0. `rate` may be NULL. Returns as dvi__solid_given. */
+static inline int dvi__solid_place(const dvi_elastic *e, int64_t vertex, double t, const double *q,
+                                   double *u, double *rate)
+{
+  for (int i = 0; i < e->n; i++) {
+    const int64_t component = vertex * e->n + i;
+    const int k = e->unknown[component];
+    u[i] = k < 0 ? e->steady[component] : q != NULL ? q[k] : 0;
+  }
+  return dvi__solid_node_is_driven(e, vertex) ? dvi__solid_given(e, vertex, t, u, rate) : 0;
+}
+
 #endif

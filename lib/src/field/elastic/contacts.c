@@ -41,11 +41,7 @@ static int meet(const dvi__solid_contact *of, double t, const double *q, meeting
 {
   const dvi_elastic *e = of->elastic;
   *at = (meeting){.gap = 0};
-  for (int i = 0; i < e->n; i++) {
-    const int k = e->unknown[of->vertex * e->n + i];
-    at->x[i] = k >= 0 ? q[k] : 0;
-  }
-  const int returned = dvi__solid_given(e, of->vertex, t, at->x, at->rate);
+  const int returned = dvi__solid_place(e, of->vertex, t, q, at->x, at->rate);
   for (int i = 0; i < e->n; i++) at->x[i] += e->point[of->vertex * e->n + i];
   at->gap = dvi__solid_gap(of->obstacle, e->n, at->x, at->normal);
   return returned;

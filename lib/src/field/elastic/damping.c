@@ -6,17 +6,21 @@
 
 enum { NUMBERS = DVI__SOLID_NUMBERS };
 
-/* Give D of a cell. Returns 0 if it has none. */
-static int find_damping(const dvi_elastic *e, int64_t cell, double *D)
+static int is_damped(const dvi_elastic *e, int64_t cell)
+{
+  const dvi__solid_material *m = e->materials + e->material[cell];
+  return m->alpha > 0 || m->beta > 0;
+}
+
+/* Give D of a cell. */
+static void find_damping(const dvi_elastic *e, int64_t cell, double *D)
 {
   const int numbers = (e->n + 1) * e->n;
   const dvi__solid_material *m = e->materials + e->material[cell];
   const double part = m->rho * e->volume[cell] / (e->n + 1);
-  if (m->alpha == 0 && m->beta == 0) return 0;
   (void)dvi__solid_stiffness(e, cell, NULL, D);
   for (int k = 0; k < numbers * numbers; k++) D[k] *= m->beta;
   for (int k = 0; k < numbers; k++) D[k * numbers + k] += m->alpha * part;
-  return 1;
 }
 
 /* Add the forces of nodes that conditions move. */
@@ -25,10 +29,11 @@ static int add_driven(const dvi_elastic *e, double t, double *F)
   const int numbers = (e->n + 1) * e->n;
   for (int64_t c = 0; c < e->cells; c++) {
     double rate[NUMBERS], D[NUMBERS * NUMBERS], f[NUMBERS] = {0};
-    if (!find_damping(e, c, D)) continue;
+    if (!is_damped(e, c)) continue;
     const int found = dvi__solid_driven_rates(e, c, t, rate);
     if (found < 0) return found;
     if (found == 0) continue;
+    find_damping(e, c, D);
     for (int r = 0; r < numbers; r++)
       for (int k = 0; k < numbers; k++) f[r] -= D[r * numbers + k] * rate[k];
     dvi__solid_scatter(e, c, f, F);
@@ -63,15 +68,16 @@ static int damping_jacobian(double t, const double *q, const double *v, double *
 dvi_status dvi__solid_make_damping(dvi__solid_system *s)
 {
   const dvi_elastic *e = s->elastic;
-  int is_damped = 0;
-  for (int m = 0; m < e->material_count; m++)
-    is_damped |= e->materials[m].alpha > 0 || e->materials[m].beta > 0;
-  if (!is_damped) return DVI_OK;
+  int64_t damped = 0;
+  for (int64_t c = 0; c < e->cells; c++) damped += is_damped(e, c);
+  if (damped == 0) return DVI_OK;
   s->damping = DVI_NEW(double, s->pattern.matrix.start[s->pattern.matrix.rows]);
   if (s->damping == NULL) return dvi__fail(DVI_NO_MEMORY, "elastic: no memory for damping");
   for (int64_t c = 0; c < e->cells; c++) {
     double D[NUMBERS * NUMBERS];
-    if (find_damping(e, c, D)) dvi__solid_add_matrix(e, &s->pattern, c, D, s->damping);
+    if (!is_damped(e, c)) continue;
+    find_damping(e, c, D);
+    dvi__solid_add_matrix(e, &s->pattern, c, D, s->damping);
   }
   s->force = (dvi_force){.name = "damping",
                          .value = damping_value,

@@ -3,23 +3,25 @@
 #include <string.h>
 
 #include "core/status.h"
+#include "field/elastic/assemble.h"
 #include "field/elastic/cell.h"
 
 /* ---- displacements and coordinates ---- */
 
-dvi_status dvi_elastic_lift(const dvi_elastic *elastic, double t, const double *q, const double *v,
+dvi_status dvi_elastic_lift(const dvi_elastic *elastic, double t, const double *q, const double *p,
                             double *u, double *rate)
 {
   if (elastic == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "elastic: a solid is needed");
   const int n = elastic->n;
   for (int64_t a = 0; a < elastic->vertices; a++) {
     double at[DVI_ELASTIC_DIMENSION_MAX] = {0}, speed[DVI_ELASTIC_DIMENSION_MAX] = {0};
-    const int returned = dvi__solid_given(elastic, a, t, at, speed);
+    const int returned = dvi__solid_place(elastic, a, t, q, at, speed);
     if (returned != 0) return dvi__solid_refuse_given(elastic, a, returned);
     for (int i = 0; i < n; i++) {
       const int k = elastic->unknown[a * n + i];
-      if (u != NULL) u[a * n + i] = k < 0 ? at[i] : q != NULL ? q[k] : 0;
-      if (rate != NULL) rate[a * n + i] = k < 0 ? speed[i] : v != NULL ? v[k] : 0;
+      if (k >= 0) speed[i] = p != NULL ? p[k] / elastic->mass[a] : 0;
+      if (u != NULL) u[a * n + i] = at[i];
+      if (rate != NULL) rate[a * n + i] = speed[i];
     }
   }
   return DVI_OK;
@@ -90,37 +92,51 @@ dvi_status dvi_elastic_energy(const dvi_elastic *elastic, double t, const double
 
 /* ---- stresses ---- */
 
-/* P F^T/J = (P + P H^T)/J. That of the linear law is P. Returns as dvi__solid_force. */
-static int find_stress(const dvi_elastic *e, int64_t cell, const double *u, double *stress)
+/* P F^T/J = (P + P H^T)/J. That of the linear law is P. Gives H, too. */
+static dvi_status find_stress(const dvi_elastic *e, int64_t cell, const double *u, double *H,
+                              double *stress)
 {
   const int n = e->n;
   const dvi__solid_material *material = e->materials + e->material[cell];
-  double own[DVI__SOLID_NUMBERS] = {0}, H[DVI__SOLID_ENTRIES], P[DVI__SOLID_ENTRIES];
+  double own[DVI__SOLID_NUMBERS] = {0}, P[DVI__SOLID_ENTRIES];
   dvi__solid_gather(e, cell, u, own);
   dvi__solid_strain(e, cell, own, H);
   const double J = 1 + dvi__trace(n, H) + dvi__higher_volume(n, H);
   const int is_linear = material->law == DVI_ELASTIC_LINEAR,
             returned = dvi__law_stress(n, material, H, P);
-  if (returned != 0) return returned;
-  if (!is_linear && !(J > 0)) return 1;
+  if (returned != 0) return dvi__solid_refuse(e, cell, returned);
+  if (!is_linear && !(J > 0)) return dvi__solid_refuse(e, cell, 1);
   for (int i = 0; i < n; i++)
     for (int j = 0; j < n; j++) {
       double sum = P[i * n + j];
       for (int k = 0; k < n && !is_linear; k++) sum += P[i * n + k] * H[j * n + k];
       stress[i * n + j] = is_linear ? sum : sum / J;
     }
-  return 0;
+  return DVI_OK;
 }
 
-dvi_status dvi_elastic_stress(const dvi_elastic *elastic, const double *u, double *stress)
+static dvi_status check_stress(const dvi_elastic *e, int64_t count, const int *cell,
+                               const double *u, const double *stress)
 {
-  if (elastic == NULL || u == NULL || stress == NULL)
+  if (e == NULL || u == NULL || stress == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT,
                      "elastic: a solid, displacements and a place for stresses are needed");
-  for (int64_t c = 0; c < elastic->cells; c++) {
-    const int returned = find_stress(elastic, c, u, stress + c * elastic->n * elastic->n);
-    if (returned != 0) return dvi__solid_refuse(elastic, c, returned);
-  }
+  for (int64_t i = 0; i < count && cell != NULL; i++)
+    if (cell[i] < 0 || cell[i] >= e->cells)
+      return dvi__fail(DVI_BAD_ARGUMENT, "elastic: the stress of cell %d is asked, of 0 to %lld",
+                       cell[i], (long long)e->cells - 1);
+  return DVI_OK;
+}
+
+dvi_status dvi_elastic_stress(const dvi_elastic *elastic, int64_t count, const int *cell,
+                              const double *u, double *stress)
+{
+  double H[DVI__SOLID_ENTRIES];
+  DVI_TRY(check_stress(elastic, count, cell, u, stress));
+  if (cell == NULL) count = elastic->cells;
+  for (int64_t i = 0; i < count; i++)
+    DVI_TRY(find_stress(elastic, cell != NULL ? cell[i] : i, u, H,
+                        stress + i * elastic->n * elastic->n));
   return DVI_OK;
 }
 
@@ -144,29 +160,31 @@ static double equivalent(const double *sigma)
   return sqrt((x * x + y * y + z * z) / 2 + 3 * shear);
 }
 
-dvi_status dvi_elastic_von_mises(const dvi_elastic *elastic, const double *u, double *stress)
+static dvi_status find_von_mises(const dvi_elastic *e, int64_t cell, const double *u,
+                                 double *stress)
 {
-  if (elastic == NULL || u == NULL || stress == NULL)
-    return dvi__fail(DVI_BAD_ARGUMENT,
-                     "elastic: a solid, displacements and a place for stresses are needed");
-  for (int64_t c = 0; c < elastic->cells; c++) {
-    double sigma[9] = {0};
-    const dvi__solid_material *material = elastic->materials + elastic->material[c];
-    if (elastic->n == 2 && material->law == DVI_ELASTIC_ENERGY)
-      return dvi__fail(DVI_UNSUPPORTED, "elastic: an energy that is given in a plane does not tell "
-                                        "the stress across it, and so not von Mises' stress");
-    const int returned = find_stress(elastic, c, u, sigma);
-    if (returned != 0) return dvi__solid_refuse(elastic, c, returned);
-    if (elastic->n == 2) {
-      double own[DVI__SOLID_NUMBERS] = {0}, H[DVI__SOLID_ENTRIES];
-      dvi__solid_gather(elastic, c, u, own);
-      dvi__solid_strain(elastic, c, own, H);
-      sigma[4] = sigma[3];
-      sigma[3] = sigma[2];
-      sigma[2] = 0;
-      sigma[8] = stress_across(material, H);
-    }
-    stress[c] = equivalent(sigma);
+  double sigma[9] = {0}, H[DVI__SOLID_ENTRIES];
+  const dvi__solid_material *material = e->materials + e->material[cell];
+  if (e->n == 2 && material->law == DVI_ELASTIC_ENERGY)
+    return dvi__fail(DVI_UNSUPPORTED, "elastic: an energy that is given in a plane does not tell "
+                                      "the stress across it, and so not von Mises' stress");
+  DVI_TRY(find_stress(e, cell, u, H, sigma));
+  if (e->n == 2) {
+    sigma[4] = sigma[3];
+    sigma[3] = sigma[2];
+    sigma[2] = 0;
+    sigma[8] = stress_across(material, H);
   }
+  *stress = equivalent(sigma);
+  return DVI_OK;
+}
+
+dvi_status dvi_elastic_von_mises(const dvi_elastic *elastic, int64_t count, const int *cell,
+                                 const double *u, double *stress)
+{
+  DVI_TRY(check_stress(elastic, count, cell, u, stress));
+  if (cell == NULL) count = elastic->cells;
+  for (int64_t i = 0; i < count; i++)
+    DVI_TRY(find_von_mises(elastic, cell != NULL ? cell[i] : i, u, stress + i));
   return DVI_OK;
 }

@@ -146,26 +146,18 @@ bool dvi__elastic_read_probes(dvi_scene *scene, const dvi__tree *section)
 
 /* The displacements and velocities [vertices*n] of a state. Released by the caller. */
 typedef struct motion {
-  double *u, *rate, *work;
+  double *u, *rate;
 } motion;
 
 static dvi_status find_motion(const dvi_elastic *solid, double t, const double *q, const double *p,
-                              size_t work, motion *m)
+                              motion *m)
 {
-  int64_t unknowns;
   const dvi_mesh *mesh = dvi_elastic_mesh(solid);
-  const int n = dvi_mesh_dimension(mesh);
-  const size_t numbers = (size_t)dvi_mesh_count(mesh, 0) * (size_t)n;
-  const int *unknown = dvi_elastic_unknowns(solid, &unknowns);
-  const double *mass = dvi_elastic_masses(solid);
-  m->u = dvi__heap_take(2 * numbers + (size_t)unknowns + work, sizeof *m->u);
+  const size_t numbers = (size_t)dvi_mesh_count(mesh, 0) * (size_t)dvi_mesh_dimension(mesh);
+  m->u = dvi__heap_take(2 * numbers, sizeof *m->u);
   if (m->u == NULL) return DVI_NO_MEMORY;
   m->rate = m->u + numbers;
-  double *v = m->rate + numbers;
-  m->work = v + unknowns;
-  for (size_t i = 0; i < numbers && p != NULL; i++)
-    if (unknown[i] >= 0) v[unknown[i]] = p[unknown[i]] / mass[i / (size_t)n];
-  return dvi_elastic_lift(solid, t, q, v, m->u, m->rate);
+  return dvi_elastic_lift(solid, t, q, p, m->u, m->rate);
 }
 
 /* Interpolate the values at the nodes, along the probe's direction. */
@@ -184,16 +176,13 @@ static double at_point(const dvi__solid_probe *probe, const double *nodes, const
   return sum;
 }
 
-static dvi_status stress_at(const dvi__solid_probe *probe, const motion *m, double *value)
+static dvi_status stress_at(const dvi__solid_probe *probe, const double *u, double *value)
 {
   const int n = dvi_mesh_dimension(dvi_elastic_mesh(probe->solid));
-  const double *sigma = m->work + (ptrdiff_t)probe->cell * n * n;
-  if (probe->of == DVI__SOLID_MISES) {
-    const dvi_status status = dvi_elastic_von_mises(probe->solid, m->u, m->work);
-    *value = m->work[probe->cell];
-    return status;
-  }
-  const dvi_status status = dvi_elastic_stress(probe->solid, m->u, m->work);
+  double sigma[DVI__SOLID_AXES * DVI__SOLID_AXES] = {0};
+  if (probe->of == DVI__SOLID_MISES)
+    return dvi_elastic_von_mises(probe->solid, 1, &probe->cell, u, value);
+  const dvi_status status = dvi_elastic_stress(probe->solid, 1, &probe->cell, u, sigma);
   *value = 0;
   for (int i = 0; i < n * n; i++) *value += probe->along[i / n] * sigma[i] * probe->across[i % n];
   return status;
@@ -216,16 +205,14 @@ static int watch(double t, const double *q, const double *p, double *value, void
 {
   const dvi__solid_probe *probe = user;
   const dvi_mesh *mesh = dvi_elastic_mesh(probe->solid);
-  const size_t n = (size_t)dvi_mesh_dimension(mesh), cells = (size_t)dvi_mesh_count(mesh, (int)n);
-  const bool is_stress = probe->of == DVI__SOLID_STRESS || probe->of == DVI__SOLID_MISES;
   motion m = {.u = NULL};
-  dvi_status status = find_motion(probe->solid, t, q, p, is_stress ? cells * n * n : 0, &m);
+  dvi_status status = find_motion(probe->solid, t, q, p, &m);
   if (status == DVI_OK) switch (probe->of) {
     case DVI__SOLID_DISPLACEMENT: *value = at_point(probe, m.u, NULL); break;
     case DVI__SOLID_VELOCITY: *value = at_point(probe, m.rate, NULL); break;
     case DVI__SOLID_POSITION: *value = at_point(probe, dvi_mesh_points(mesh), m.u); break;
     case DVI__SOLID_STRESS:
-    case DVI__SOLID_MISES: status = stress_at(probe, &m, value); break;
+    case DVI__SOLID_MISES: status = stress_at(probe, m.u, value); break;
     default: status = energy_of(probe, t, &m, value); break;
     }
   dvi__heap_free(m.u);

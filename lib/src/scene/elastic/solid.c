@@ -110,7 +110,7 @@ static bool make_start(dvi_scene *scene)
   scene->p = scene->v + n;
   if (!evaluate(scene, s->value, s->u) || !evaluate(scene, s->rate, s->velocity)) return false;
   dvi_elastic_project(s->solid, s->u, s->velocity, scene->q, scene->v, scene->p);
-  const dvi_status status = dvi_elastic_lift(s->solid, 0, scene->q, scene->v, s->u, s->velocity);
+  const dvi_status status = dvi_elastic_lift(s->solid, 0, scene->q, scene->p, s->u, s->velocity);
   return status == DVI_OK || refuse(scene, dvi__tree_find(scene->tree, "boundary")->span, status);
 }
 
