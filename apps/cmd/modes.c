@@ -48,9 +48,9 @@ static int print_modes(const modes_request *r, const problem *scene, const doubl
 }
 
 /* The modes of a field, or of small vibrations of a solid about rest if there is one. */
-static int find_modes(const modes_request *r, const problem *scene, const dvi_field *field)
+static int find_modes(const modes_request *r, const problem *scene, const dvi_field *field,
+                      const dvi_elastic *solid)
 {
-  const dvi_elastic *solid = elastic_of(scene);
   const dvi_mesh *mesh = solid != NULL ? dvi_elastic_mesh(solid) : field_mesh(field);
   const int64_t numbers = solid != NULL ? dvi_mesh_count(mesh, 0) * dvi_mesh_dimension(mesh)
                                         : dvi_mesh_count(mesh, dvi_field_degree(field));
@@ -256,8 +256,9 @@ int modes_command(int argc, char **argv)
 {
   modes_request r = {.count = 6, .near = (double)NAN};
   const char *name;
-  const dvi_field *field = NULL; /* of a solid */
-  const dvi_density *density = NULL;
+  const dvi_field *field;
+  const dvi_density *density;
+  const dvi_elastic *solid;
   problem *scene;
   int code;
   if (!options_parse(&command, argc, argv, &r, &name, &code)) return code;
@@ -266,13 +267,13 @@ int modes_command(int argc, char **argv)
   code = outputs_distinct("modes", 3, files);
   if (code != DONE) return code;
   code = open_any(name, &r.settings, &scene);
-  if (code == DONE && elastic_of(scene) == NULL)
-    code = field_choose("modes", name, &scene, &field, &density);
+  if (code == DONE) code = field_choose("modes", name, &scene, &field, &density, &solid);
   if (code != DONE) return code;
   if (density == NULL && (r.at_static_state || r.shapes != NULL))
     code = usage_error("modes: --static and --shapes are for fields with a density");
   else
-    code = density != NULL ? find_spectrum(&r, scene, density) : find_modes(&r, scene, field);
+    code = density != NULL ? find_spectrum(&r, scene, density)
+                           : find_modes(&r, scene, field, solid);
   problem_destroy(&scene);
   return code;
 }

@@ -362,7 +362,7 @@ int solve_command(int argc, char **argv)
     problem_destroy(&scene);
     return code;
   }
-  code = field_choose("solve", name, &scene, &field, &density);
+  code = field_choose("solve", name, &scene, &field, &density, NULL);
   if (code != DONE) return code;
   if (density != NULL) {
     code = solve_density(&r, scene, density);

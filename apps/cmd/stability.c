@@ -122,7 +122,8 @@ int stability_command(int argc, char **argv)
 {
   stability_request r = {.fraction = (double)NAN, .span = (double)NAN};
   const char *name;
-  const dvi_field *field = NULL; /* of a solid */
+  const dvi_field *field;
+  const dvi_elastic *solid;
   problem *scene;
   int code;
   if (!options_parse(&command, argc, argv, &r, &name, &code)) return code;
@@ -131,8 +132,7 @@ int stability_command(int argc, char **argv)
   if (!isnan(r.span) && !(r.span > 0))
     return usage_error("stability: --span %g: a time above 0 is wanted", r.span);
   code = open_any(name, &r.settings, &scene);
-  if (code == DONE && elastic_of(scene) == NULL)
-    code = field_choose("stability", name, &scene, &field, NULL);
+  if (code == DONE) code = field_choose("stability", name, &scene, &field, NULL, &solid);
   if (code != DONE) return code;
   code = examine_all(&r, scene, field);
   problem_destroy(&scene);

@@ -42,11 +42,14 @@ static int refuse_solid(const char *command, problem **scene)
 }
 
 int field_choose(const char *command, const char *name, problem **scene, const dvi_field **field,
-                 const dvi_density **density)
+                 const dvi_density **density, const dvi_elastic **solid)
 {
   if (dvi_scene_grid_only((*scene)->scene) != NULL) return refuse_grid(scene, false);
   *field = dvi_scene_field((*scene)->scene);
+  if (density != NULL) *density = NULL;
+  if (solid != NULL) *solid = NULL;
   if (*field != NULL || (density != NULL && (*density = density_of(*scene)) != NULL)) return DONE;
+  if (solid != NULL && (*solid = elastic_of(*scene)) != NULL) return DONE;
   if (elastic_of(*scene) != NULL) return refuse_solid(command, scene);
   if (dvi_scene_moving((*scene)->scene) != NULL) return refuse_moving(command, scene);
   if (has_rotations(*scene)) return refuse_rotations(command, scene);

@@ -2,16 +2,17 @@
 #ifndef FIELD_OF_SCENE_H
 #define FIELD_OF_SCENE_H
 #include <dvi/density.h>
+#include <dvi/elastic.h>
 #include <dvi/field.h>
 
 #include "cli/options.h"
 #include "problem.h"
 
-/** Take the field of a scene, or its density, which is then set and `field` is NULL. A command
- * without use for densities gives NULL. Returns DONE, or complains that `command` needs a field,
- * destroys the scene and returns the exit code. */
+/** Take the field of a scene, or its density or its solid, of which one is set and the others are
+ * NULL. A command without use for densities or solids gives NULL for them. Returns DONE, or
+ * complains that `command` needs a field, destroys the scene and returns the exit code. */
 int field_choose(const char *command, const char *name, problem **scene, const dvi_field **field,
-                 const dvi_density **density);
+                 const dvi_density **density, const dvi_elastic **solid);
 
 /** Return the mesh of a field. */
 const dvi_mesh *field_mesh(const dvi_field *field);

@@ -13,27 +13,10 @@ static const char *const axis[] = {"x", "y", "z"};
 static int displace(double t, const double *X, double *u, double *rate, void *user)
 {
   const dvi__solid_function *f = user;
-  const int failed = dvi__solid_function_value(f, t, X, NULL, u);
-  if (failed == 0 && f->has_time) return dvi__solid_function_rate(f, t, X, rate);
-  for (int i = 0; i < f->n && failed == 0; i++) rate[i] = 0;
-  return failed;
-}
-
-/* One component, which the library takes from a vector. */
-typedef struct component {
-  dvi__solid_function *function;
-  int axis;
-} component;
-
-static int displace_one(double t, const double *X, double *u, double *rate, void *user)
-{
-  const component *c = user;
-  memset(u, 0, (size_t)c->function->n * sizeof *u);
-  memset(rate, 0, (size_t)c->function->n * sizeof *rate);
-  const int failed = dvi__solid_function_value(c->function, t, X, NULL, u + c->axis);
-  return failed != 0 || !c->function->has_time
-             ? failed
-             : dvi__solid_function_rate(c->function, t, X, rate + c->axis);
+  memset(u, 0, (size_t)f->n * sizeof *u);
+  memset(rate, 0, (size_t)f->n * sizeof *rate);
+  const int failed = dvi__solid_function_value(f, t, X, NULL, u + f->first);
+  return failed != 0 || !f->has_time ? failed : dvi__solid_function_rate(f, t, X, rate + f->first);
 }
 
 static dvi_elastic_condition *next_condition(dvi_scene *scene, const char *part)
@@ -52,16 +35,15 @@ static bool read_components(dvi_scene *scene, const char *part, const dvi__tree 
   for (int i = 0; i < n && i < DVI__SOLID_AXES; i++) {
     const dvi__tree *value = dvi__tree_find(tree, axis[i]);
     if (value == NULL) continue;
-    component *c = dvi__arena_take(&scene->arena, 1, sizeof *c);
-    if (c == NULL) return dvi__scene_no_memory(scene);
-    c->axis = i;
-    if (!dvi__solid_function_read(scene, value, DVI__SOLID_TIME, 1, "a displacement", &c->function))
+    dvi__solid_function *function;
+    if (!dvi__solid_function_read(scene, value, DVI__SOLID_TIME, 1, "a displacement", &function))
       return false;
+    function->first = i;
     dvi_elastic_condition *made = next_condition(scene, part);
     made->component[i] = 1;
-    made->displacement = displace_one;
-    made->is_steady = !c->function->has_time;
-    made->user = c;
+    made->displacement = displace;
+    made->is_steady = !function->has_time;
+    made->user = function;
   }
   return true;
 }

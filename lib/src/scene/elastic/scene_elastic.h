@@ -20,6 +20,7 @@ enum { DVI__SOLID_TIME = 1, DVI__SOLID_NORMAL = 2, DVI__SOLID_ENERGY = 4 };
 /* A number, or a vector, as a function of a place. */
 typedef struct dvi__solid_function {
   int n, count;
+  int first; /* component of a vector that it gives */
   bool has_time;
   dvi_potential component[DVI__SOLID_AXES]; /* each a function of t and of the place */
 } dvi__solid_function;
