@@ -209,6 +209,31 @@ START_TEST(an_inverted_cell_stops_all_threads_where_it_stops_one)
 }
 END_TEST
 
+/* Steps at rest's bound explode far from rest. The march stands before that, and can go on a bit. */
+START_TEST(what_is_not_finite_is_taken_back_on_all_threads)
+{
+  dvi_elastic *solid = block(3, 3, 2, DVI_ELASTIC_SVK);
+  dvi__solid_avi *avi[2];
+  for (int i = 0; i < 2; i++) {
+    dvi__solid_request request = request_of(_i, 1 + 2 * i);
+    request.fraction = 0.9;
+    request.band = 1e300;
+    avi[i] = started(solid, &request, 0, 6);
+    dvi_status status = DVI_OK;
+    for (int k = 1; status == DVI_OK && k < 100; k++)
+      status = dvi__solid_avi_advance(avi[i], 0.7 * k);
+    ck_assert_msg(status == DVI_NOT_FINITE, "%s", dvi_last_error());
+    for (int64_t v = 0; v < avi[i]->vertices; v++)
+      for (int k = 0; k < 3; k++) ck_assert(isfinite(avi[i]->state.node[v].v[k]));
+    check_same(avi[0], avi[i]);
+  }
+  for (int i = 0; i < 2; i++) advance(avi[i], avi[i]->clock.t + 0.5 * avi[i]->shortest);
+  check_same(avi[0], avi[1]);
+  for (int i = 0; i < 2; i++) dvi__solid_avi_destroy(avi + i);
+  dvi_elastic_destroy(&solid);
+}
+END_TEST
+
 /* ---- any order ---- */
 
 static double next_time(const dvi__solid_avi *avi, const int64_t *count, int64_t c)
@@ -273,6 +298,7 @@ SUITE(elastic_threads)
   tcase_add_loop_test(tests, a_march_is_saved_on_two_threads_and_goes_on_with_one_or_three, 0,
                       2 * WAYS);
   tcase_add_loop_test(tests, an_inverted_cell_stops_all_threads_where_it_stops_one, 0, WAYS);
+  tcase_add_loop_test(tests, what_is_not_finite_is_taken_back_on_all_threads, 0, WAYS);
   tcase_add_loop_test(tests, any_order_that_keeps_that_of_each_node_gives_the_same_bits, 0,
                       WAYS * SOLIDS);
 }
