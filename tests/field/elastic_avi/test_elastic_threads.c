@@ -209,7 +209,7 @@ START_TEST(an_inverted_cell_stops_all_threads_where_it_stops_one)
 }
 END_TEST
 
-/* Steps at rest's bound explode far from rest. The march stands before that, and can go on a bit. */
+/* Far from rest the bound at rest is none. The march stands before that, and can go on a bit. */
 START_TEST(what_is_not_finite_is_taken_back_on_all_threads)
 {
   dvi_elastic *solid = block(3, 3, 2, DVI_ELASTIC_SVK);

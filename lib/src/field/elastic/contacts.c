@@ -22,8 +22,9 @@ typedef struct meeting {
 double dvi__solid_gap(const dvi_obstacle *o, int n, const double *x, double *normal)
 {
   const double sign = o->kind == DVI_OBSTACLE_BALL ? 1 : -1;
-  double gap = 0, distance = 0;
+  double distance = 0;
   if (o->kind == DVI_OBSTACLE_PLANE) {
+    double gap = 0;
     for (int i = 0; i < n; i++) {
       gap += (x[i] - o->point[i]) * o->normal[i];
       normal[i] = o->normal[i];

@@ -149,7 +149,7 @@ static void gather_pushes(const flight *f, int is_hit, meeting *at)
     if (is_hit) pull_now(f, c, a, now, fresh), force = fresh;
     at->shortest = fmin(at->shortest, avi->step[c]);
     for (int i = 0; i < n; i++) {
-      const double rate = f->given & 1 << i ? 0 : f->node->inverse / left * force[a * n + i];
+      const double rate = (f->given & 1 << i) ? 0 : f->node->inverse / left * force[a * n + i];
       at->debt[i] += owed * rate;
       at->pull[i] += rate;
     }
@@ -171,7 +171,7 @@ static int find_normal(const flight *f, const dvi_obstacle *o, meeting *at)
 {
   *at = (meeting){0};
   at->gap = gap_of(f, o, at->normal);
-  for (int i = 0; i < DVI__SOLID_AXES; i++) at->free[i] = f->given & 1 << i ? 0 : at->normal[i];
+  for (int i = 0; i < DVI__SOLID_AXES; i++) at->free[i] = (f->given & 1 << i) ? 0 : at->normal[i];
   at->square = dot(at->free, at->free);
   return at->square > 1e-12;
 }
@@ -195,7 +195,7 @@ static double along_surface(const flight *f, const meeting *at, const double *v,
 {
   const double through = dot(v, at->free) / at->square;
   for (int i = 0; i < DVI__SOLID_AXES; i++)
-    along[i] = f->given & 1 << i ? 0 : v[i] - through * at->free[i];
+    along[i] = (f->given & 1 << i) ? 0 : v[i] - through * at->free[i];
   return sqrt(dot(along, along));
 }
 

@@ -61,7 +61,7 @@ static dvi_status see_debt(const dvi__solid_avi *avi, int64_t c, const double *u
     const double owed = dvi__decay_owed(avi->decay != NULL ? avi->decay[vertex] : 0, avi->step[c],
                                         since);
     for (int i = 0; i < n; i++)
-      debt[a * n + i] = avi->node_kind[vertex] & 1 << i
+      debt[a * n + i] = (avi->node_kind[vertex] & 1 << i)
                             ? 0
                             : avi->state.node[vertex].inverse *
                                   (owed * f[a * n + i] + answer[a * n + i]);

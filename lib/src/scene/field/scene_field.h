@@ -89,8 +89,8 @@ bool dvi__quantity_set(dvi_scene *scene, const dvi__quantity *of, const char *pa
  * the section that it is of, or else `otherwise`. Returns false. */
 bool dvi__complain_of_field(dvi_scene *scene, const dvi__tree *otherwise, dvi_status status);
 
-/* Read what a section boundary says of each part, or of the part boundary if it is a word. `span` is
- * that of the part's name. */
+/* Read what a section boundary says of each part, or of the part boundary if it is a word. `span`
+ * is that of the part's name. */
 typedef bool dvi__part_reader(dvi_scene *scene, const char *part, dvi__span span,
                               const dvi__tree *tree);
 bool dvi__read_by_part(dvi_scene *scene, const dvi__tree *section, dvi__part_reader *read);
