@@ -193,6 +193,18 @@ static int write_field(study *s, const dvi_connection *adjusted)
   return status_code(status);
 }
 
+/* Write the deficits of a surface that has no field without singularities. */
+static int write_deficits(const study *s)
+{
+  const dvi_view view = {.name = "deficit", .values = s->deficit, .components = 1, .degree = 0};
+  return status_code(dvi_mesh_write(s->mesh, s->request->vtu, 1, &view));
+}
+
+static bool has_constant_field(const study *s)
+{
+  return s->sums.euler == 0 && dvi_mesh_orientation(s->mesh) != NULL;
+}
+
 static int make_field(study *s)
 {
   dvi_singularity at[SINGULAR_MAX];
@@ -200,6 +212,8 @@ static int make_field(study *s)
       .size = sizeof options, .singularity = at, .symmetry = (int)s->request->symmetry};
   dvi_connection *adjusted = NULL;
   if (s->request->singular.count == 0 && s->request->vtu == NULL) return DONE;
+  if (s->request->singular.count == 0 && s->n == 2 && !has_constant_field(s))
+    return write_deficits(s);
   int code = read_singular(&s->request->singular, at, &options.singularities);
   if (code != DONE) return code;
   code = status_code(dvi_connection_adjust(s->plain, &options, &adjusted));
@@ -344,6 +358,11 @@ static void print_report(const study *s, FILE *stream)
                   "directions: holonomy 2 pi times the indices up to %.1e, mismatch at edges %.1e, "
                   "%lld loops\n",
                   s->worst_index, s->mismatch, (long long)s->loops);
+  else if (s->request->vtu != NULL)
+    (void)fprintf(stream, "directions: none, %s\n",
+                  dvi_mesh_orientation(s->mesh) == NULL
+                      ? "because the surface is not orientable"
+                      : "because they need indices that sum to chi: name vertices by --singular");
 }
 
 /* ---- the command ---- */
@@ -415,7 +434,8 @@ static const option command_options[] = {
     {.name = "vtu",
      OPTION_AT(curvature_request, vtu),
      .value = "FILE",
-     .help = "write the directions and deficits; without --singular all indices are 0"},
+     .help = "write directions and deficits; without --singular all indices are 0, and there are "
+             "no directions unless Euler's characteristic is 0"},
     {.name = NULL},
 };
 

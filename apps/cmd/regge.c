@@ -185,10 +185,11 @@ static double radius_of(const study *s, double length)
   return cbrt(volume / (2 * pi * pi));
 }
 
+/* The Euclidean one, a 4-sphere, ends at its pole. */
 static double de_sitter(const regge_request *r, double t)
 {
-  const double rate = sqrt(r->lambda / 3);
-  return (r->euclidean ? cos(rate * t) : cosh(rate * t)) / rate;
+  const double rate = sqrt(r->lambda / 3), ratio = r->euclidean ? cos(rate * t) : cosh(rate * t);
+  return ratio > 0 ? ratio / rate : (double)NAN;
 }
 
 static int write_universe(const study *s, const double *length, const double *constraint)

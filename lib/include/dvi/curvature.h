@@ -41,14 +41,15 @@ typedef struct dvi_connection_options {
   const double *rotation;
   /** not 0 to lift the rotations to Spin(n). The signs are chosen so that the holonomy around each
    *  hinge is lifted to the turn by its deficit modulo 4 pi, that of own rotations to the shorter
-   *  of both turns */
+   *  of both turns, and to any where both are half turns */
   int spin;
 } dvi_connection_options;
 
 /** A vertex around which directions turn. */
 typedef struct dvi_singularity {
   int64_t vertex;
-  double index; /**< turns of the direction along a small loop around the vertex */
+  double index; /**< turns of the direction along a small loop around the vertex, of size 1e4 at
+                     most */
 } dvi_singularity;
 
 /** Options of dvi_connection_adjust. Zero means the default. */
@@ -61,7 +62,7 @@ typedef struct dvi_adjust_options {
   int singularities;
   int symmetry; /**< N for fields of N directions in each cell. Indices are multiples of 1/N.
                      Default 1 */
-  /** [dvi_connection_loops] turns in radians along the loops, modulo 2 pi/N. Default: 0 */
+  /** [dvi_connection_loops] finite turns in radians along the loops, modulo 2 pi/N. Default: 0 */
   const double *turn;
   int is_least; /**< not 0 to leave the turns along loops as the least adjustment has them */
 } dvi_adjust_options;
@@ -104,7 +105,8 @@ dvi_status dvi_gauss_bonnet_of(const dvi_mesh *mesh, const double *length,
  *  @retval DVI_BAD_ARGUMENT  an own rotation is none up to 1e-8, or the cells around a hinge do not
  *                            hang together
  *  @retval DVI_UNSUPPORTED   there is no lift: the mesh is not orientable, or has no spin
- *                            structure, as the complex projective plane
+ *                            structure, as the complex projective plane, or an own rotation turns
+ *                            right into left, or no signs suit the shorter turns of own rotations
  *  @retval DVI_NO_MEMORY     there is no memory
  *  @retval (others)          as dvi_hinge_deficits */
 dvi_status dvi_connection_create(const dvi_mesh *mesh, const dvi_connection_options *options,
@@ -122,9 +124,10 @@ const double *dvi_connection_frame(const dvi_connection *connection, int64_t cel
 
 /** Give vectors in space from their components in the cells' frames.
  *
- *  @param      component  [cells*n]
+ *  @param      component  [cells*n] of size 1e300 at most
  *  @param[out] vector     [cells*space]
- *  @retval DVI_BAD_ARGUMENT  an argument is missing, or the metric is that of lengths */
+ *  @retval DVI_BAD_ARGUMENT  an argument is missing, a component is too large or no number, or the
+ *                            metric is that of lengths */
 dvi_status dvi_connection_vectors(const dvi_connection *connection, const double *component,
                                   double *vector);
 
@@ -153,9 +156,9 @@ dvi_status dvi_connection_along(const dvi_connection *connection, int64_t count,
 
 /** Transport a vector along a path of n-cells in parallel.
  *
- *  @param      vector  [n] components in the frame of the first cell
+ *  @param      vector  [n] components in the frame of the first cell, of size 1e300 at most
  *  @param[out] moved   [count*n] components in the frame of each cell of the path
- *  @retval (others)    as dvi_connection_along */
+ *  @retval DVI_BAD_ARGUMENT  as dvi_connection_along, or a component is too large or no number */
 dvi_status dvi_connection_transport(const dvi_connection *connection, int64_t count,
                                     const int *cell, const double *vector, double *moved);
 
@@ -211,8 +214,9 @@ const int *dvi_connection_loop(const dvi_connection *connection, int64_t loop, i
  *  @param[out] adjusted  the adjusted connection, for dvi_connection_destroy. It has no lift
  *  @retval DVI_UNSUPPORTED   the mesh is no orientable connected surface of triangles
  *  @retval DVI_BAD_ARGUMENT  a vertex is out of range, or two have one boundary or are equal, an
- *                            index is no multiple of 1/N, or the indices do not sum to Euler's
- *                            characteristic. dvi_last_error() names the vertex, or the sum
+ *                            index is no multiple of 1/N or too large, the indices do not sum to
+ *                            Euler's characteristic, or a turn is not finite. dvi_last_error()
+ *                            names the vertex, the sum, or the loop
  *  @retval DVI_SINGULAR      the matrix is not definite
  *  @retval DVI_NO_MEMORY     there is no memory */
 dvi_status dvi_connection_adjust(const dvi_connection *connection,

@@ -51,10 +51,13 @@ expect 1 'the sum' curvature icosphere --singular 0=1
 says err 'the indices sum to 1, and on this surface they sum to 2' 'the sum'
 expect 1 'the vertex' curvature icosphere --singular 0=.5,1=1.5
 says err 'index 0.5 at vertex 0 is no multiple' 'the vertex'
+says err 'fields of symmetry 2 have such an index' 'its symmetry'
 expect 2 'a pair' curvature icosphere --singular 0:1
 says err 'as in 12=1' 'a pair'
 expect 2 'boxes' curvature box
-says err 'the cells are boxes' 'boxes'
+says err 'kind .rectangle., and triangles, tetrahedra or 4-simplices are needed' 'boxes'
+expect 0 'deficits alone' curvature icosphere --vtu d.vtu
+says out 'directions: none, because they need indices that sum to chi' 'deficits alone'
 expect 2 'two tables' curvature torus --csv - --hinges -
 says err 'would be mixed' 'two tables'
 finish

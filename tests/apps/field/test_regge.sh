@@ -57,6 +57,8 @@ about universe.csv de_sitter 1.5430806348152437 1e-12
 expect 1 'a universe with an end' regge cell-600 --lambda 3 --euclidean --evolve 40
 says out '^0,0.66012428' 'its rows'
 says err 'the universe ends there' 'its end'
+awk -F, 'NR > 1 && $1 > 1.58 && $4 != "" { wrong = 1 } END { exit wrong || $1 < 1.58 }' out ||
+  fail 'a sphere has no radius behind its pole'
 
 printf 'from,to,length\n0,1,9\n' >long.csv
 expect 1 'no triangle' regge simplex-4 --lengths long.csv

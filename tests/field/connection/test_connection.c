@@ -336,7 +336,54 @@ START_TEST(own_rotations_are_those_that_paths_multiply)
 }
 END_TEST
 
+/* The plane with one side has no frames without a side, but own rotations may be those of a
+ * bundle that has. */
+START_TEST(own_rotations_may_have_a_lift_on_one_side)
+{
+  dvi_mesh *mesh = projective_plane();
+  double *own = random_rotations(2, dvi_mesh_count(mesh, 1), 3);
+  for (int64_t e = 0; e < dvi_mesh_count(mesh, 1); e++) dvi__rotation_one(2, own + 4 * e);
+  const dvi_connection_options options = {.size = sizeof options, .rotation = own, .spin = 1};
+  dvi_connection *c = NULL;
+  ck_assert_int_eq(dvi_connection_create(mesh, &options, &c), DVI_OK);
+  for (int64_t v = 0; v < 6; v++) {
+    double lift[2];
+    ck_assert_int_eq(dvi_connection_holonomy(c, v, NULL, lift), DVI_OK);
+    ck_assert_double_eq_tol(lift[0], 1, roundoff);
+  }
+  dvi_connection_destroy(&c);
+  for (int i = 2; i < 4; i++) own[i] = -own[i];
+  ck_assert_int_eq(dvi_connection_create(mesh, &options, &c), DVI_UNSUPPORTED);
+  check_words("turns right into left");
+  free(own);
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
+
 /* ---- refusals ---- */
+
+START_TEST(vectors_that_are_no_numbers_are_refused)
+{
+  dvi_mesh *mesh = space(0);
+  dvi_connection *c = connect(mesh, NULL, 0);
+  const int path[] = {0};
+  double moved[2], *component = calloc(2 * (size_t)dvi_mesh_count(mesh, 2), sizeof *component),
+                   *vector = calloc(3 * (size_t)dvi_mesh_count(mesh, 2), sizeof *vector);
+  ck_assert_int_eq(dvi_connection_transport(c, 1, path, (const double[]){1, NAN}, moved),
+                   DVI_BAD_ARGUMENT);
+  check_words("component 1 of the vectors is nan");
+  ck_assert_int_eq(dvi_connection_transport(c, 1, path, (const double[]){1e301, 0}, moved),
+                   DVI_BAD_ARGUMENT);
+  check_words("component 0 of the vectors is 1e+301, and 1e+300 is the largest size");
+  component[7] = -INFINITY;
+  ck_assert_int_eq(dvi_connection_vectors(c, component, vector), DVI_BAD_ARGUMENT);
+  check_words("component 7 of the vectors is -inf");
+  free(component);
+  free(vector);
+  dvi_connection_destroy(&c);
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
 
 START_TEST(paths_that_jump_are_refused)
 {
@@ -389,6 +436,8 @@ SUITE(connection)
   tcase_add_test(tests, flat_transport_keeps_vectors_of_space);
   tcase_add_loop_test(tests, ways_back_undo_ways, 0, COUNT(spaces));
   tcase_add_test(tests, own_rotations_are_those_that_paths_multiply);
+  tcase_add_test(tests, own_rotations_may_have_a_lift_on_one_side);
+  tcase_add_test(tests, vectors_that_are_no_numbers_are_refused);
   tcase_add_test(tests, paths_that_jump_are_refused);
   tcase_add_test(tests, pinched_hinges_are_refused);
 }

@@ -197,7 +197,7 @@ START_TEST(meshes_without_angles_are_refused)
   const double metric[] = {1, -1};
   dvi_mesh *spacetime = random_simplex(2, 2, metric, 3);
   ck_assert_int_eq(dvi_hinge_deficits(boxes, NULL, deficit), DVI_UNSUPPORTED);
-  check_words("the cells are boxes");
+  check_words("cells of kind 'rectangle', and triangles, tetrahedra or 4-simplices are needed");
   ck_assert_int_eq(dvi_gauss_bonnet_of(ball, NULL, &report), DVI_UNSUPPORTED);
   check_words("is for triangles");
   ck_assert_int_eq(dvi_hinge_deficits(spacetime, NULL, deficit), DVI_UNSUPPORTED);

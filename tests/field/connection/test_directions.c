@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "field/connection/connection.h"
 #include "support/field/complexes.h"
 #include "support/field/generated.h"
 #include "support/suite.h"
@@ -261,6 +262,51 @@ START_TEST(loops_may_stay_as_they_come)
 }
 END_TEST
 
+/* ---- lifts ---- */
+
+/* Lift the rotations of a trivial connection of the icosphere with singularities of one index. */
+static dvi_status lift(double index, int count, int symmetry, dvi_connection **lifted)
+{
+  dvi_singularity at[4];
+  for (int i = 0; i < count; i++) at[i] = (dvi_singularity){.vertex = 30 * i, .index = index};
+  const dvi_adjust_options field = {
+      .size = sizeof field, .singularity = at, .singularities = count, .symmetry = symmetry};
+  dvi_mesh *mesh = surface("icosphere", 2, 0);
+  dvi_connection *c = connect(mesh), *adjusted = adjust(c, &field);
+  const dvi_connection_options options = {
+      .size = sizeof options, .rotation = adjusted->rotation, .spin = 1};
+  const dvi_status status = dvi_connection_create(mesh, &options, lifted);
+  dvi_connection_destroy(&adjusted);
+  dvi_connection_destroy(&c);
+  dvi_mesh_destroy(&mesh);
+  return status;
+}
+
+/* A half turn may be lifted to pi or to -pi, all else to 0. */
+START_TEST(half_turns_of_own_rotations_are_lifted_to_either_sense)
+{
+  dvi_connection *lifted = NULL;
+  ck_assert_int_eq(lift(0.5, 4, 2, &lifted), DVI_OK);
+  for (int v = 0; v < 162; v++) {
+    double angle;
+    ck_assert_int_eq(dvi_connection_turn(lifted, v, &angle, NULL), DVI_OK);
+    ck_assert_double_eq_tol(fabs(angle), v % 30 == 0 && v < 120 ? pi : 0, roundoff);
+  }
+  dvi_connection_destroy(&lifted);
+}
+END_TEST
+
+/* Three turns by -2 pi/3 on a sphere have the lift -1 together, although the sphere has a spin
+ * structure. */
+START_TEST(own_rotations_whose_shorter_turns_contradict_have_no_lift)
+{
+  dvi_connection *lifted = NULL;
+  ck_assert_int_eq(lift(2.0 / 3, 3, 3, &lifted), DVI_UNSUPPORTED);
+  check_words("the own rotations have no lift that turns by the shorter way");
+  ck_assert_ptr_null(lifted);
+}
+END_TEST
+
 /* ---- refusals ---- */
 
 static void refuse(const dvi_connection *c, int count, const dvi_singularity *at, dvi_status status,
@@ -281,11 +327,19 @@ START_TEST(indices_that_no_field_has_are_refused)
   dvi_connection *c = connect(sphere), *ring = connect(annulus), *plane = connect(one_sided),
                  *solid = connect(ball);
   const dvi_singularity one = {4, 1}, beyond = {4000, 2}, broken = {4, 1.5},
-                        twice[] = {{4, 1}, {4, 1}}, rims[] = {{0, 1}, {1, -1}};
+                        twice[] = {{4, 1}, {4, 1}}, rims[] = {{0, 1}, {1, -1}}, none = {4, NAN},
+                        third = {4, 1.0 / 3}, odd = {4, 0.123}, large[] = {{3, 20002}, {4, -20000}};
   refuse(c, 0, NULL, DVI_BAD_ARGUMENT, "the indices sum to 0, and on this surface they sum to 2");
   refuse(c, 1, &one, DVI_BAD_ARGUMENT, "the indices sum to 1");
   refuse(c, 1, &beyond, DVI_BAD_ARGUMENT, "index 2 at vertex 4000");
-  refuse(c, 1, &broken, DVI_BAD_ARGUMENT, "index 1.5 at vertex 4 is no multiple of 1/1");
+  refuse(
+      c, 1, &broken, DVI_BAD_ARGUMENT,
+      "index 1.5 at vertex 4 is no multiple of 1/1, as fields of symmetry 1 have them; fields of "
+      "symmetry 2 have such an index");
+  refuse(c, 1, &third, DVI_BAD_ARGUMENT, "fields of symmetry 3 have such an index");
+  refuse(c, 1, &odd, DVI_BAD_ARGUMENT, "index 0.123 at vertex 4 is no multiple of 1/1");
+  refuse(c, 1, &none, DVI_BAD_ARGUMENT, "index nan at vertex 4, and indices are -10000 to 10000");
+  refuse(c, 2, large, DVI_BAD_ARGUMENT, "index 20002 at vertex 3");
   refuse(c, 2, twice, DVI_BAD_ARGUMENT, "vertices 4 and 4 have indices, and are the same");
   refuse(ring, 2, rims, DVI_BAD_ARGUMENT, "are on the same boundary");
   refuse(plane, 1, &one, DVI_UNSUPPORTED, "is not orientable");
@@ -301,6 +355,23 @@ START_TEST(indices_that_no_field_has_are_refused)
 }
 END_TEST
 
+START_TEST(turns_that_are_not_finite_are_refused)
+{
+  const double turn[] = {0.5, INFINITY}, none[] = {NAN, 0};
+  dvi_adjust_options options = {.size = sizeof options, .turn = turn};
+  dvi_mesh *mesh = surface("torus", 12, 6);
+  dvi_connection *c = connect(mesh), *adjusted = NULL;
+  ck_assert_int_eq(dvi_connection_adjust(c, &options, &adjusted), DVI_BAD_ARGUMENT);
+  check_words("turn inf along loop 1");
+  options.turn = none;
+  ck_assert_int_eq(dvi_connection_adjust(c, &options, &adjusted), DVI_BAD_ARGUMENT);
+  check_words("turn nan along loop 0");
+  ck_assert_ptr_null(adjusted);
+  dvi_connection_destroy(&c);
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
+
 SUITE(directions)
 {
   tcase_add_loop_test(tests, trivial_connections_make_one_field, 0, COUNT(fields));
@@ -309,5 +380,8 @@ SUITE(directions)
   tcase_add_test(tests, adjustments_are_the_least);
   tcase_add_test(tests, constant_fields_of_the_plane_need_no_adjustment);
   tcase_add_test(tests, loops_may_stay_as_they_come);
+  tcase_add_test(tests, half_turns_of_own_rotations_are_lifted_to_either_sense);
+  tcase_add_test(tests, own_rotations_whose_shorter_turns_contradict_have_no_lift);
   tcase_add_test(tests, indices_that_no_field_has_are_refused);
+  tcase_add_test(tests, turns_that_are_not_finite_are_refused);
 }

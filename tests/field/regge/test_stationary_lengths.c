@@ -226,6 +226,67 @@ START_TEST(a_closed_complex_without_lambda_has_no_stationary_lengths)
 }
 END_TEST
 
+static fixture of_generator(const char *name, const dvi_generator_options *options, double lambda)
+{
+  dvi_mesh *mesh = NULL;
+  ck_assert_int_eq(dvi_mesh_generate(name, options, &mesh), DVI_OK);
+  return of_mesh(mesh, lambda);
+}
+
+/* Closed complexes with positive deficits and negative Lambda, and flat ones with any Lambda, can
+ * only shrink to 0. */
+START_TEST(closed_complexes_without_a_size_are_reported)
+{
+  const dvi_generator_options three = {.size = sizeof three, .cells = {3, 3, 3}};
+  static const char *const name[] = {"cell-16", "simplex-5", "kuhn-torus", "kuhn-torus"};
+  static const double lambda[] = {-1, -1, 1, -1};
+  for (int i = 0; i < 4; i++) {
+    fixture f = of_generator(name[i], i < 2 ? NULL : &three, lambda[i]);
+    ck_assert_int_eq(dvi_regge_solve(f.regge, NULL, f.length, NULL), DVI_NOT_CONVERGED);
+    check_words("the guess has no size for which both are equal");
+    clear(&f);
+  }
+}
+END_TEST
+
+/* Squares of gradients of 1e155 overflow, and the size is far from 1. */
+START_TEST(lambda_may_have_any_size)
+{
+  dvi_regge_report report;
+  fixture f = of_generator("simplex-4", NULL, 1e100);
+  ck_assert_int_eq(dvi_regge_solve(f.regge, NULL, f.length, &report), DVI_OK);
+  for (int64_t e = 0; e < f.edges; e++)
+    ck_assert_double_eq_tol(f.length[e] / 3.8279223440995e-50, 1, 1e-12);
+  clear(&f);
+  f = of_generator("simplex-4", NULL, 1e200);
+  ck_assert_int_eq(dvi_regge_solve(f.regge, NULL, f.length, &report), DVI_BAD_ARGUMENT);
+  check_words("has the length 3.82792e-100, and 1e-60 to 1e+60 are possible");
+  clear(&f);
+  f = divided_tetrahedron(1e200);
+  ck_assert_int_eq(dvi_regge_solve(f.regge, NULL, f.length, &report), DVI_NOT_CONVERGED);
+  ck_assert_double_ge(report.residual, 1e190);
+  clear(&f);
+}
+END_TEST
+
+/* With Lambda the moves of the 13 inner vertices are soft, and the damping has to become small
+ * beside their eigenvalues of about 1e-3. */
+START_TEST(lambda_holds_inner_vertices_softly)
+{
+  const dvi_generator_options two = {.size = sizeof two, .cells = {2}};
+  dvi_regge_report report;
+  fixture f = of_generator("ball", &two, 0.3);
+  ck_assert_int_eq(dvi_regge_solve(f.regge, NULL, f.length, &report), DVI_OK);
+  ck_assert_double_le(report.residual, 1e-13);
+  ck_assert_int_eq(report.null_directions, 0);
+  clear(&f);
+  f = of_generator("ball", &two, 0.02);
+  ck_assert_int_eq(dvi_regge_solve(f.regge, NULL, f.length, &report), DVI_NOT_CONVERGED);
+  check_words("with Lambda moves of inner vertices are only nearly free");
+  clear(&f);
+}
+END_TEST
+
 START_TEST(no_memory_is_reported)
 {
   fixture f = divided_tetrahedron(0);
@@ -251,5 +312,8 @@ SUITE(stationary_lengths)
   tcase_add_test(tests, failures_leave_the_lengths_and_name_the_reason);
   tcase_add_test(tests, a_problem_without_a_solution_is_reported);
   tcase_add_test(tests, a_closed_complex_without_lambda_has_no_stationary_lengths);
+  tcase_add_test(tests, closed_complexes_without_a_size_are_reported);
+  tcase_add_test(tests, lambda_may_have_any_size);
+  tcase_add_test(tests, lambda_holds_inner_vertices_softly);
   tcase_add_test(tests, no_memory_is_reported);
 }

@@ -23,8 +23,15 @@
 #include "field/connection/connection.h"
 #include "field/connection/surface.h"
 #include "num/dense.h"
+#include "num/finite.h"
 
 static const double two_pi = 6.28318530717958647693, index_slack = 1e-9;
+
+/* Symmetries that a sentence may name. */
+enum { MOST_NAMED = 12 };
+
+/* Holonomies have the roundings of 2 pi times the largest index, times the matrix's condition. */
+static const double most_index = 1e4;
 
 typedef struct adjustment {
   const dvi_connection *c;
@@ -63,6 +70,27 @@ static dvi_status check_single(const adjustment *a, int i)
   return DVI_OK;
 }
 
+static int is_multiple(double index, int symmetry)
+{
+  const double multiple = index * symmetry;
+  return fabs(multiple - nearbyint(multiple)) <= index_slack;
+}
+
+static dvi_status refuse_fraction(const dvi_singularity *given, int symmetry)
+{
+  int other = 1;
+  while (other < MOST_NAMED && !is_multiple(given->index, other)) other++;
+  if (is_multiple(given->index, other))
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "curvature: index %g at vertex %lld is no multiple of 1/%d, as fields of "
+                     "symmetry %d have them; fields of symmetry %d have such an index",
+                     given->index, (long long)given->vertex, symmetry, symmetry, other);
+  return dvi__fail(DVI_BAD_ARGUMENT,
+                   "curvature: index %g at vertex %lld is no multiple of 1/%d, as fields of "
+                   "symmetry %d have them",
+                   given->index, (long long)given->vertex, symmetry, symmetry);
+}
+
 static dvi_status check_index(const adjustment *a, int i)
 {
   const dvi_singularity *given = a->options->singularity + i;
@@ -70,13 +98,21 @@ static dvi_status check_index(const adjustment *a, int i)
     return dvi__fail(DVI_BAD_ARGUMENT,
                      "curvature: index %g at vertex %lld, and the vertices are 0 to %lld",
                      given->index, (long long)given->vertex, (long long)a->c->mesh->count[0] - 1);
-  const double multiple = given->index * a->symmetry;
-  if (!(fabs(multiple - nearbyint(multiple)) <= index_slack))
+  if (!(fabs(given->index) <= most_index))
     return dvi__fail(DVI_BAD_ARGUMENT,
-                     "curvature: index %g at vertex %lld is no multiple of 1/%d, as fields of %d "
-                     "directions have them",
-                     given->index, (long long)given->vertex, a->symmetry, a->symmetry);
-  return check_single(a, i);
+                     "curvature: index %g at vertex %lld, and indices are -%g to %g", given->index,
+                     (long long)given->vertex, most_index, most_index);
+  return is_multiple(given->index, a->symmetry) ? check_single(a, i)
+                                                : refuse_fraction(given, a->symmetry);
+}
+
+static dvi_status check_turns(const adjustment *a)
+{
+  const double *turn = a->options->turn;
+  const ptrdiff_t at = turn != NULL ? dvi__first_not_finite((size_t)a->c->loops, turn) : -1;
+  if (at < 0) return DVI_OK;
+  return dvi__fail(DVI_BAD_ARGUMENT, "curvature: turn %g along loop %td, and turns are finite",
+                   turn[at], at);
 }
 
 static dvi_status check_indices(const adjustment *a)
@@ -282,6 +318,7 @@ static dvi_status solve(adjustment *a)
   a->edges = a->c->mesh->count[1];
   DVI_TRY(dvi__surface_create(a->c->mesh, 0, &a->s));
   DVI_TRY(check_indices(a));
+  DVI_TRY(check_turns(a));
   a->weight = DVI_NEW(double, 3 * a->edges);
   a->right = DVI_NEW(double, 3 * a->s.nodes);
   if (a->weight == NULL || a->right == NULL) return no_memory();

@@ -21,9 +21,9 @@ dvi_status dvi__check_metric(const dvi_mesh *mesh, const double *length)
   if (mesh == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "curvature: a mesh is needed");
   if (mesh->kind != DVI_SIMPLICES || mesh->n < 2)
     return dvi__fail(DVI_UNSUPPORTED,
-                     "curvature: the cells are %s of dimension %d, and hinges have those of "
-                     "simplices of dimension 2 to 4",
-                     mesh->kind == DVI_BOXES ? "boxes" : "simplices", mesh->n);
+                     "curvature: the mesh has cells of kind '%s', and triangles, tetrahedra or "
+                     "4-simplices are needed: divide boxes as the generator kuhn does",
+                     dvi__degree_name(mesh->kind, mesh->n));
   if (mesh->branching >= 0)
     return dvi__fail(DVI_BAD_ARGUMENT, "curvature: %s belongs to more than two cells, 2 at most",
                      dvi__name_cell(mesh, mesh->n - 1, mesh->branching).text);

@@ -8,7 +8,8 @@
  * for the parameters (inactivation, as in Shokrollahi and Luby 2011). Bits are thus words with one
  * bit for each parameter and the last one for a constant. An equation 0 = 1 says that there is no
  * spin structure, which is so if and only if the second Stiefel-Whitney class does not vanish
- * (Milnor 1963). */
+ * (Milnor 1963). Of own rotations the holonomies shall be lifted to the shorter turns, which may
+ * contradict each other on any mesh. */
 #include <math.h>
 #include <string.h>
 
@@ -21,11 +22,15 @@ enum { PARAMETERS = 63 };
 
 static const uint64_t constant = (uint64_t)1 << PARAMETERS;
 
+/* Own rotations may be wrong by 1e-8 each. */
+static const double half_turn_slack = 1e-7;
+
 typedef struct signs {
   const dvi_connection *c;
   int64_t facets, hinges;
   uint64_t *bit;  /* [facets] */
   char *is_known; /* [facets] */
+  char *is_free;  /* [hinges] not 0 for those of which nothing is asked */
   uint64_t *sum;  /* [hinges] of the known bits, and of the given one */
   int *unknown;   /* [hinges] */
   int64_t *queue; /* [facets*n] hinges with at most one unknown bit, last in first out */
@@ -45,14 +50,25 @@ static uint64_t reduce(const signs *s, uint64_t word)
   return word;
 }
 
+static dvi_status refuse(const signs *s, int64_t hinge)
+{
+  const dvi__cell_name name = dvi__name_cell(s->c->mesh, s->c->n - 2, hinge);
+  if (s->c->is_own)
+    return dvi__fail(DVI_UNSUPPORTED,
+                     "curvature: the own rotations have no lift that turns by the shorter way "
+                     "around all hinges: its signs around %s contradict those around others; take "
+                     "the rotations without spin",
+                     name.text);
+  return dvi__fail(DVI_UNSUPPORTED,
+                   "curvature: the mesh has no spin structure, since the signs of lifts around %s "
+                   "contradict those around others; take rotations without spin",
+                   name.text);
+}
+
 static dvi_status add_equation(signs *s, int64_t hinge)
 {
   uint64_t word = reduce(s, s->sum[hinge]);
-  if (word == constant)
-    return dvi__fail(DVI_UNSUPPORTED,
-                     "curvature: the mesh has no spin structure, since the signs of lifts around "
-                     "%s contradict those around others; take rotations without spin",
-                     dvi__name_cell(s->c->mesh, s->c->n - 2, hinge).text);
+  if (word == constant) return refuse(s, hinge);
   for (int p = 0; p < PARAMETERS && word != 0; p++)
     if (word >> p & 1) {
       s->equation[p] = word;
@@ -96,7 +112,7 @@ static void know(signs *s, int64_t facet, uint64_t word)
   for (int j = 0; j < n; j++) {
     const int hinge = s->c->mesh->facet[n - 1][facet * n + j];
     s->sum[hinge] ^= word;
-    if (--s->unknown[hinge] <= 1 && !s->c->rings.is_open[hinge]) s->queue[s->queued++] = hinge;
+    if (--s->unknown[hinge] <= 1 && !s->is_free[hinge]) s->queue[s->queued++] = hinge;
   }
 }
 
@@ -123,8 +139,9 @@ static dvi_status follow_hinges(signs *s)
 
 /* ---- hinges ---- */
 
-/* Tell if the product of the lifts around a hinge is the negative of what it shall be. */
-static dvi_status given_bit(const signs *s, int64_t hinge, double deficit, uint64_t *bit)
+/* Tell if the product of the lifts around an inner hinge is the negative of what it shall be.
+ * Nothing is asked of half turns by own rotations, which are as long in either sense. */
+static dvi_status ask_hinge(signs *s, int64_t hinge, double deficit)
 {
   const int n = s->c->n, size = dvi__spin_size(n);
   double lift[DVI__SPIN_MAX], wanted[DVI__SPIN_MAX], along = 0;
@@ -136,7 +153,8 @@ static dvi_status given_bit(const signs *s, int64_t hinge, double deficit, uint6
     dvi__spin_turn(n, &plane, deficit, wanted);
   }
   for (int i = 0; i < size; i++) along += lift[i] * wanted[i];
-  *bit = along < 0 ? constant : 0;
+  s->is_free[hinge] = s->c->is_own && fabs(along) <= half_turn_slack;
+  s->sum[hinge] = along < 0 ? constant : 0;
   return DVI_OK;
 }
 
@@ -147,7 +165,8 @@ static dvi_status start_hinges(signs *s)
                                       : dvi__fail(DVI_NO_MEMORY, "curvature: no memory for a lift");
   for (int64_t h = 0; h < s->hinges && status == DVI_OK; h++) {
     s->unknown[h] = (int)(s->c->rings.start[h + 1] - s->c->rings.start[h]);
-    if (!s->c->rings.is_open[h]) status = given_bit(s, h, deficit[h], s->sum + h);
+    s->is_free[h] = s->c->rings.is_open[h];
+    if (!s->is_free[h]) status = ask_hinge(s, h, deficit[h]);
   }
   dvi__release(deficit);
   return status;
@@ -197,13 +216,14 @@ static dvi_status choose_signs(signs *s, dvi_connection *c)
   char *is_reached = DVI_NEW(char, c->mesh->count[c->n]);
   s->bit = DVI_NEW(uint64_t, s->facets);
   s->is_known = DVI_NEW(char, s->facets);
+  s->is_free = DVI_NEW(char, s->hinges);
   s->sum = DVI_NEW(uint64_t, s->hinges);
   s->unknown = DVI_NEW(int, s->hinges);
   s->queue = DVI_NEW(int64_t, s->facets * c->n);
   s->order = DVI_NEW(int, c->mesh->count[c->n]);
   dvi_status status = DVI_OK;
-  if (is_reached == NULL || s->bit == NULL || s->is_known == NULL || s->sum == NULL ||
-      s->unknown == NULL || s->queue == NULL || s->order == NULL)
+  if (is_reached == NULL || s->bit == NULL || s->is_known == NULL || s->is_free == NULL ||
+      s->sum == NULL || s->unknown == NULL || s->queue == NULL || s->order == NULL)
     status = dvi__fail(DVI_NO_MEMORY, "curvature: no memory for a lift");
   if (status == DVI_OK) status = start_hinges(s);
   if (status == DVI_OK) {
@@ -217,6 +237,7 @@ static dvi_status choose_signs(signs *s, dvi_connection *c)
   dvi__release(is_reached);
   dvi__release(s->bit);
   dvi__release(s->is_known);
+  dvi__release(s->is_free);
   dvi__release(s->sum);
   dvi__release(s->unknown);
   dvi__release(s->queue);
@@ -243,7 +264,7 @@ static dvi_status lift_rotations(dvi_connection *c)
 dvi_status dvi__connection_lift(dvi_connection *c)
 {
   signs s = {.c = c, .facets = c->mesh->count[c->n - 1], .hinges = c->mesh->count[c->n - 2]};
-  if (c->mesh->orientation == NULL)
+  if (c->mesh->orientation == NULL && !c->is_own)
     return dvi__fail(DVI_UNSUPPORTED,
                      "curvature: the mesh is not orientable, and its rotations have no lift; take "
                      "them without spin");

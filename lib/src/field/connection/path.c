@@ -31,6 +31,19 @@ const double *dvi_connection_frame(const dvi_connection *connection, int64_t cel
   return connection->frame + cell * connection->n * connection->mesh->space;
 }
 
+/* Rotations of larger components might overflow. */
+static const double largest_component = 1e300;
+
+static dvi_status check_components(size_t count, const double *component)
+{
+  for (size_t i = 0; i < count; i++)
+    if (!(fabs(component[i]) <= largest_component))
+      return dvi__fail(DVI_BAD_ARGUMENT,
+                       "curvature: component %zu of the vectors is %g, and %g is the largest size",
+                       i, component[i], largest_component);
+  return DVI_OK;
+}
+
 dvi_status dvi_connection_vectors(const dvi_connection *connection, const double *component,
                                   double *vector)
 {
@@ -41,6 +54,7 @@ dvi_status dvi_connection_vectors(const dvi_connection *connection, const double
     return dvi__fail(DVI_BAD_ARGUMENT,
                      "curvature: the metric is that of lengths, and has no vectors in space");
   const int n = connection->n, space = connection->mesh->space;
+  DVI_TRY(check_components((size_t)(connection->mesh->count[n] * n), component));
   for (int64_t c = 0; c < connection->mesh->count[n]; c++)
     for (int l = 0; l < space; l++) {
       double sum = 0;
@@ -129,6 +143,7 @@ dvi_status dvi_connection_transport(const dvi_connection *connection, int64_t co
   if (vector == NULL || moved == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "curvature: a vector and a place for it are needed");
   const int n = connection->n;
+  DVI_TRY(check_components((size_t)n, vector));
   memcpy(moved, vector, (size_t)n * sizeof *moved);
   for (int64_t i = 0; i + 1 < count; i++) {
     double R[DVI__ROTATION_MAX];

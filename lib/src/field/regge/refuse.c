@@ -58,8 +58,8 @@ static dvi_status refuse_length(const dvi_regge *r, int64_t edge, double length)
                      "regge: %s has the length %g, and %g to %g are possible: choose another unit",
                      name.text, length, shortest, longest);
   return dvi__fail(DVI_BAD_ARGUMENT,
-                   "regge: %s has the length %g, and lengths are positive numbers: squares of "
-                   "lengths below 0, as of Lorentzian signature, are not possible",
+                   "regge: %s has the length %g, and lengths are positive numbers, because the "
+                   "signature is Euclidean",
                    name.text, length);
 }
 

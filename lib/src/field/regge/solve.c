@@ -33,6 +33,8 @@ static const double shift_part = 1e-7;
  * rounding, and some ten of them meet at a hinge. */
 static const double roundoff = 16 * DBL_EPSILON;
 
+static const double pi = 3.14159265358979323846;
+
 /* If |g| falls no more, it may be as large as this beside its terms, as in thin simplices. */
 static const double floor_part = 1e-11;
 
@@ -56,6 +58,8 @@ typedef struct search {
   double *length, *trial; /* [edges] */
   dvi__regge_sums sums;
   double delta, damping;
+  int is_least;   /* delta is the least one */
+  int scale_sign; /* 1, but without held lengths and with Lambda that of the square of the scale */
   double size, terms; /* |g|, and that of the sizes of its terms */
 } search;
 
@@ -155,11 +159,14 @@ static void clear(search *s)
 
 /* ---- the iteration ---- */
 
+/* Squares of gradients with a large Lambda would overflow. */
 static double norm(const search *s, const double *of_edges)
 {
-  double sum = 0;
-  for (int64_t u = 0; u < s->unknowns; u++) sum += of_edges[s->edge[u]] * of_edges[s->edge[u]];
-  return sqrt(sum);
+  double most = 0, sum = 0;
+  for (int64_t u = 0; u < s->unknowns; u++) most = fmax(most, fabs(of_edges[s->edge[u]]));
+  for (int64_t u = 0; u < s->unknowns && most > 0; u++)
+    sum += of_edges[s->edge[u]] / most * (of_edges[s->edge[u]] / most);
+  return most * sqrt(sum);
 }
 
 /* Evaluate the gradient, and with `all` the Hessian. */
@@ -169,6 +176,7 @@ static dvi_status evaluate(search *s, const double *length, int all)
   if (!all) sums.hessian = NULL;
   DVI_TRY(dvi__regge_evaluate(s->regge, length, &sums));
   s->sums.action = sums.action;
+  s->sums.volume = sums.volume;
   s->size = norm(s, sums.gradient);
   s->terms = norm(s, sums.terms);
   return DVI_OK;
@@ -188,8 +196,10 @@ static dvi_status factor(search *s, double gradient, double multiple)
   double most = 0;
   for (int i = 0; i < entries; i++) most = fmax(most, fabs(s->sums.hessian[s->place[i]]));
   if (most == 0) return dvi__fail(DVI_SINGULAR, "regge: the Hessian of the action vanishes");
-  s->delta = fmax(multiple * shift_part * most,
-                  sqrt(s->damping * most * gradient / typical_length(s)));
+  const double least = multiple * shift_part * most,
+               delta = most * sqrt(s->damping * (gradient / typical_length(s) / most));
+  s->is_least = delta <= least;
+  s->delta = fmax(delta, least);
   for (int64_t u = 0; u < s->unknowns; u++)
     for (int i = s->pattern.start[u]; i < s->pattern.start[u + 1]; i++) {
       s->value[2 * i] = s->sums.hessian[s->place[i]];
@@ -227,39 +237,74 @@ static dvi_status search_line(search *s, int *falls, dvi_status *refused)
     memcpy(s->length, s->trial, (size_t)s->regge->edges * sizeof *s->trial);
     return i == 0 ? DVI_OK : evaluate(s, s->length, 1);
   }
+  s->damping *= relief;
   return evaluate(s, s->length, 1);
 }
 
-/* The sum of l_e dS/dl_e is (n-2) S without Lambda. */
+/* Without held lengths the sum of l_e dS/dl_e is (n-2) sum |h| eps - n Lambda V. */
+static const char *remedy(const search *s)
+{
+  const double lambda = s->regge->lambda;
+  if (s->unknowns == s->regge->edges && lambda == 0)
+    return "without Lambda and without held lengths only S = 0 is stationary";
+  if (s->unknowns == s->regge->edges && s->scale_sign <= 0)
+    return "without held lengths (n-2) sum |h| eps = n Lambda V, and the guess has no size for "
+           "which both are equal";
+  if (lambda != 0 && s->unknowns < s->regge->edges)
+    return "start from lengths nearer to a solution, such as that of another Lambda, because with "
+           "Lambda moves of inner vertices are only nearly free";
+  return "start from lengths nearer to a solution";
+}
+
 static dvi_status refuse(const search *s, int iterations, dvi_status refused)
 {
-  const int is_free = s->regge->lambda == 0 && s->unknowns == s->regge->edges;
-  if (refused == DVI_OK)
+  if (refused == DVI_OK || s->scale_sign <= 0)
     return dvi__fail(DVI_NOT_CONVERGED,
                      "regge: Newton's method left a gradient of %.2g (iterations: %d): %s", s->size,
-                     iterations,
-                     is_free ? "without Lambda and without held lengths only S = 0 is stationary"
-                             : "start from lengths nearer to a solution");
-  return dvi__fail_in(
-      DVI_NOT_CONVERGED,
-      "regge: Newton's method left a gradient of %.2g (iterations: %d), and its next "
-      "step leads to lengths that do not exist",
-      s->size, iterations);
+                     iterations, remedy(s));
+  return dvi__fail_in(DVI_NOT_CONVERGED,
+                      "regge: Newton's method left a gradient of %.2g (iterations: %d): %s; its "
+                      "next step leads to lengths that do not exist",
+                      s->size, iterations, remedy(s));
+}
+
+static int has_free_scale(const search *s)
+{
+  return s->unknowns == s->regge->edges && s->regge->lambda != 0;
+}
+
+/* Give 2 pi sum |h|, beside which sum |h| eps has its roundings. */
+static double turns_of(const dvi_regge *r, const double *size)
+{
+  double sum = 0;
+  for (int64_t h = 0; h < r->hinges; h++) sum += 2 * pi * size[h];
+  return sum;
+}
+
+/* Without held lengths a flat complex shrinks, until Lambda is a rounding beside its curvature. */
+static int is_collapsed(const search *s)
+{
+  const dvi_regge *r = s->regge;
+  return has_free_scale(s) &&
+         r->n * fabs(r->lambda) * s->sums.volume <= floor_part * turns_of(r, s->sums.size);
 }
 
 /* Without held lengths, make the action (c^(n-2) S_0 - c^n Lambda V) stationary in their scale c
- * first, because the gradient also vanishes as all lengths shrink to 0. */
+ * first, because the gradient also vanishes as all lengths shrink to 0. S_0 may be a rounding, as
+ * of flat complexes. */
 static dvi_status choose_scale(search *s)
 {
   const dvi_regge *r = s->regge;
   dvi__regge_sums sums = s->sums;
+  double curvature = 0;
   sums.gradient = sums.terms = sums.hessian = NULL;
-  if (s->unknowns < r->edges) return DVI_OK;
+  if (!has_free_scale(s)) return DVI_OK;
   DVI_TRY(dvi__regge_evaluate(r, s->length, &sums));
-  const double volume = r->lambda * sums.volume,
-               square = (r->n - 2) * (sums.action + volume) / (r->n * volume);
-  if (!(square > 0) || !isfinite(square)) return DVI_OK;
-  for (int64_t e = 0; e < r->edges; e++) s->length[e] *= sqrt(square);
+  for (int64_t h = 0; h < r->hinges; h++) curvature += sums.size[h] * sums.deficit[h];
+  const double square = (r->n - 2) * curvature / (r->n * r->lambda * sums.volume);
+  const int is_flat = fabs(curvature) <= floor_part * turns_of(r, sums.size);
+  s->scale_sign = is_flat ? 0 : square > 0 ? 1 : -1;
+  for (int64_t e = 0; e < r->edges && s->scale_sign > 0; e++) s->length[e] *= sqrt(square);
   return DVI_OK;
 }
 
@@ -269,13 +314,14 @@ static dvi_status iterate(search *s, int most, int *iterations)
   int falls = 1;
   DVI_TRY(choose_scale(s));
   DVI_TRY(evaluate(s, s->length, 1));
-  for (*iterations = 0; s->size > roundoff * s->terms && falls && *iterations < most;
+  for (*iterations = 0;
+       s->size > roundoff * s->terms && (falls || !s->is_least) && *iterations < most;
        ++*iterations) {
     DVI_TRY(factor(s, s->size, 1));
     DVI_TRY(find_step(s));
     DVI_TRY(search_line(s, &falls, &refused));
   }
-  if (s->size <= floor_part * s->terms) return DVI_OK;
+  if (s->size <= floor_part * s->terms && !is_collapsed(s)) return DVI_OK;
   return refuse(s, *iterations, refused);
 }
 
@@ -317,7 +363,7 @@ dvi_status dvi_regge_solve(const dvi_regge *regge, const dvi_regge_options *opti
   if (options->iterations < 0)
     return dvi__fail(DVI_BAD_ARGUMENT, "regge: %d iterations are asked, 1 or more are possible",
                      options->iterations);
-  search s = {.regge = regge, .damping = 1};
+  search s = {.regge = regge, .damping = 1, .scale_sign = 1};
   dvi_status status = prepare(&s, options->held);
   if (status == DVI_OK) {
     memcpy(s.length, length, (size_t)regge->edges * sizeof *length);
