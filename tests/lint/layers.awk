@@ -66,7 +66,7 @@ BEGIN {
   sees["field/elastic"] = "core num field/algebra field/mesh"
   sees["field/elastic_avi"] = sees["field/step"] " field/step field/elastic"
   sees["field/rotations"] = "core field/algebra"
-  sees["field/regge"] = "core num field/algebra field/mesh"
+  sees["field/regge"] = "core num solve field/algebra field/mesh"
   sees["field/connection"] = "core num field/algebra field/mesh field/forms field/regge"
   # The library of scenes includes libdvi's public headers, too.
   sees["text"] = ""

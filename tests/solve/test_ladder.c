@@ -212,6 +212,64 @@ START_TEST(a_row_that_is_rounding_is_solved)
 }
 END_TEST
 
+/* ---- complex Jacobians ---- */
+
+/* Both rows are (x + y)^2 - 4, whose Jacobian is singular everywhere. */
+static dvi_status square_rows(void *of, const double *x, double *r)
+{
+  (void)of;
+  r[0] = r[1] = (x[0] + x[1]) * (x[0] + x[1]) - 4;
+  return DVI_OK;
+}
+
+static dvi_status shifted_jacobian(void *of, const double *x, double *values)
+{
+  (void)of;
+  for (int e = 0; e < 4; e++) {
+    values[2 * e] = 2 * (x[0] + x[1]);
+    values[2 * e + 1] = e % 3 == 0 ? 1e-7 : 0;
+  }
+  return DVI_OK;
+}
+
+static dvi_status no_chord(void *of, const double *x)
+{
+  (void)of;
+  (void)x;
+  return DVI_OK;
+}
+
+static dvi_status unit_rows(void *of, double *scale, int *unchanged)
+{
+  (void)of;
+  (void)unchanged;
+  scale[0] = scale[1] = 1;
+  return DVI_OK;
+}
+
+/* The shift's steps are those of least norm, up to a rounding over 1e-7: x - y stays. */
+START_TEST(shifts_of_singular_jacobians_give_steps_of_least_norm)
+{
+  int start[] = {0, 2, 4}, row[] = {0, 1, 0, 1};
+  const dvi__pattern pattern = {.rows = 2, .columns = 2, .start = start, .row = row};
+  const dvi__equations equations = {.unknowns = 2,
+                                    .pattern = &pattern,
+                                    .linear = DVI__LINEAR_COMPLEX,
+                                    .residual = square_rows,
+                                    .jacobian = shifted_jacobian,
+                                    .prepare_chord = no_chord,
+                                    .row_scale = unit_rows,
+                                    .renewed = 1};
+  solver_bench bench = {0};
+  double x[] = {1.5, 0.1};
+  ck_assert_int_eq(dvi__solver_create(&equations, &bench.counters, &bench.solver), DVI_OK);
+  ck_assert_msg(solve_by_rung(&bench, rungs[1 + _i], x) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_double_eq_tol(x[0] + x[1], 2, 1e-14);
+  ck_assert_double_eq_tol(x[0] - x[1], 1.4, 1e-7);
+  destroy_solver_bench(&bench, NULL);
+}
+END_TEST
+
 SUITE(ladder)
 {
   tcase_add_loop_test(tests, every_rung_finds_the_solution_to_roundoff, 0, 3);
@@ -225,4 +283,5 @@ SUITE(ladder)
   tcase_add_loop_test(tests, a_singular_jacobian_is_a_step_s_failure, 0, 2);
   tcase_add_loop_test(tests, a_start_on_a_critical_point_is_a_failure, 0, 2);
   tcase_add_loop_test(tests, a_row_that_is_rounding_is_solved, 0, 2);
+  tcase_add_loop_test(tests, shifts_of_singular_jacobians_give_steps_of_least_norm, 0, 2);
 }

@@ -42,12 +42,12 @@ typedef struct dvi_regge_measures {
 typedef struct dvi_regge_options {
   size_t size;        /**< sizeof(dvi_regge_options) */
   const int8_t *held; /**< [edges] not 0 for lengths that stay. Default: those of the boundary */
-  int iterations;     /**< at most. Default: 60 */
+  int iterations;     /**< at most. Default: 100 */
 } dvi_regge_options;
 
 /** How it went. */
 typedef struct dvi_regge_report {
-  int iterations;
+  int iterations;   /**< Hessians that were factored */
   double residual;  /**< largest |dS/dl_e| of a length that is not held */
   double action;    /**< S at the end */
   int64_t unknowns; /**< lengths that are not held */
@@ -130,15 +130,17 @@ dvi_status dvi_regge_hinges(const dvi_regge *regge, const double *length, double
 dvi_status dvi_regge_measure(const dvi_regge *regge, const double *length,
                              dvi_regge_measures *measures);
 
-/** Make the action stationary in the lengths that are not held, by Newton's method with the sparse
- *  Hessian H and steps of least norm, -H (H^2 + delta^2)^{-1} dS/dl, delta = 1e-7 of H's largest
- *  entry or more. Steps are halved until all simplices exist and the gradient falls. If no length
- *  is held, all are first multiplied by the number that makes the action stationary.
+/** Make the action stationary in the lengths that are not held, by KINSOL's Newton method with line
+ *  search, with the sparse Hessian H and steps of least norm, -H (H^2 + delta^2)^{-1} dS/dl, delta
+ *  = 1e-7 of H's largest entry or more. Steps are shortened until all simplices exist and the
+ *  gradient falls. If no length is held, all are first multiplied by the number that makes the
+ *  action stationary.
  *
  *  @param[in]     options  NULL for the defaults
  *  @param[in,out] length   [edges] a guess, and the solution. Unchanged after a failure
  *  @param[out]    report   may be NULL. Set also if the iteration does not converge
- *  @retval DVI_BAD_ARGUMENT   as dvi_regge_action, or all lengths are held
+ *  @retval DVI_BAD_ARGUMENT   as dvi_regge_action, or all lengths are held, or those of the size
+ *                             that Lambda gives are out of range
  *  @retval DVI_NOT_CONVERGED  the gradient falls no more, or not fast enough. dvi_last_error()
  *                             names the simplex that stops it, if one does
  *  @retval DVI_SINGULAR       the Hessian vanishes

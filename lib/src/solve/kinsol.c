@@ -93,7 +93,7 @@ static int linear_solve(SUNLinearSolver linear, SUNMatrix matrix, N_Vector x, N_
   const dvi__kinsol *k = linear->content;
   (void)matrix, (void)tolerance;
   N_VScale(1.0, b, x);
-  if (dvi__linear_solve(k->solver->linear, N_VGetArrayPointer(x)) != DVI_OK) return 1;
+  if (dvi__solver_correction(k->solver, N_VGetArrayPointer(x)) != DVI_OK) return 1;
   return not_finite(k, x);
 }
 

@@ -81,7 +81,7 @@ dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__so
     if (!fresh) DVI_TRY(dvi__solver_factor(s, x));
     DVI_TRY(dvi__solver_residual(s, x, s->residual));
     report->row = dvi__largest((size_t)s->equations.unknowns, s->residual);
-    const dvi_status solved = dvi__linear_solve(s->linear, s->residual);
+    const dvi_status solved = dvi__solver_correction(s, s->residual);
     s->unsolved = solved != DVI_OK;
     DVI_TRY(solved);
     dvi__correct(s->equations.unknowns, s->residual, x, &report->correction, &whole);

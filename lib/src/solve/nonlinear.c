@@ -19,9 +19,15 @@ dvi_status dvi__solver_residual(dvi__solver *solver, const double *x, double *r)
 
 /* ---- Jacobian of Newton's method ---- */
 
+/* Give the numbers of an entry. */
+static int width_of(const dvi__solver *solver)
+{
+  return solver->equations.linear == DVI__LINEAR_COMPLEX ? 2 : 1;
+}
+
 static size_t jacobian_entries(const dvi__solver *solver)
 {
-  return (size_t)dvi__pattern_entries(solver->equations.pattern);
+  return (size_t)width_of(solver) * (size_t)dvi__pattern_entries(solver->equations.pattern);
 }
 
 static dvi_status solver_create_linear(dvi__solver *s)
@@ -29,7 +35,8 @@ static dvi_status solver_create_linear(dvi__solver *s)
   const dvi__equations *e = &s->equations;
   if (e->whole != NULL) return dvi__linear_create_iterative(e->whole, s->counters, &s->linear);
   if (s->values == NULL) s->values = DVI_NEW(double, jacobian_entries(s));
-  if (s->values == NULL)
+  if (s->pairs == NULL && width_of(s) == 2) s->pairs = DVI_NEW(double, 2 * (int64_t)e->unknowns);
+  if (s->values == NULL || (s->pairs == NULL && width_of(s) == 2))
     return dvi__fail(DVI_NO_MEMORY, "solver: no memory for a Jacobian of %zu entries",
                      jacobian_entries(s));
   if (e->border > 0)
@@ -137,7 +144,7 @@ static void add_moved(const dvi__solver *solver, const double *x, double *sum)
   const dvi__pattern *pattern = solver->equations.pattern;
   for (int j = 0; j < pattern->columns; j++)
     for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++)
-      sum[pattern->row[e]] += fabs(solver->values[e] * x[j]);
+      sum[pattern->row[e]] += fabs(solver->values[width_of(solver) * e] * x[j]);
 }
 
 dvi_status dvi__solver_at_floor(dvi__solver *solver, const double *x, int settled, int *at_floor)
@@ -196,13 +203,26 @@ void dvi__solver_destroy(dvi__solver **solver)
   dvi__release(s->before);
   dvi__release(s->magnitude);
   dvi__release(s->values);
+  dvi__release(s->pairs);
   dvi__release(s);
   *solver = NULL;
 }
 
+dvi_status dvi__solver_correction(dvi__solver *solver, double *r)
+{
+  if (solver->pairs == NULL) return dvi__linear_solve(solver->linear, r);
+  for (int i = 0; i < solver->equations.unknowns; i++) {
+    solver->pairs[2 * i] = r[i];
+    solver->pairs[2 * i + 1] = 0;
+  }
+  DVI_TRY(dvi__linear_solve(solver->linear, solver->pairs));
+  for (int i = 0; i < solver->equations.unknowns; i++) r[i] = solver->pairs[2 * i];
+  return DVI_OK;
+}
+
 void dvi__solver_apply_factor(dvi__solver *solver, double *b)
 {
-  dvi__linear_solve(solver->linear, b);
+  (void)dvi__solver_correction(solver, b);
 }
 
 int dvi__solver_sign(const dvi__solver *solver)

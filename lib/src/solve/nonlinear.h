@@ -29,7 +29,8 @@ struct dvi__equations {
   dvi_status (*prepare)(void *of, struct dvi__equations *own);
   const dvi__pattern *pattern; /* pattern of the Jacobian, which outlives the solver */
   /* linear solver of the Jacobian; default AUTO, which takes the diagonal entries for the largest
-   * ones */
+   * ones. With COMPLEX values are pairs, and corrections are real parts: those of H + i delta are
+   * H (H^2 + delta^2)^-1 R, Tikhonov's, where a symmetric H may be singular */
   dvi__linear_kind linear;
   /* number of last rows and columns that may be full while the matrix counts as sparse; default 0,
    * and `linear` alone decides */

@@ -14,6 +14,7 @@ struct dvi__solver {
   double *magnitude;   /* [unknowns] magnitudes of what is summed in the rows, NULL if not known */
   double *moved;       /* [unknowns] what a correction moves in the rows, in the same memory */
   double *values;      /* values of the Jacobian, NULL if not prepared, or an operator */
+  double *pairs;       /* [2*unknowns] of a COMPLEX Jacobian, else NULL */
   int factored;        /* values are factored */
   int unsolved;        /* the last correction was not found by an iterative solver */
   int in_use;          /* the current iteration uses them */
@@ -26,6 +27,9 @@ dvi_status dvi__solver_residual(dvi__solver *solver, const double *x, double *r)
 
 /* Evaluate the Jacobian at x into values and factor it. */
 dvi_status dvi__solver_factor(dvi__solver *solver, const double *x);
+
+/* Replace a residual by the correction of the factored Jacobian. Fails like dvi__linear_solve. */
+dvi_status dvi__solver_correction(dvi__solver *solver, double *r);
 
 /* Find whether every row at x is 0 to a rounding of what is summed in it and of the unknowns, as
  * the Jacobian in use sees them. With `settled` small corrections have not shrunk any more, and

@@ -282,7 +282,7 @@ START_TEST(lambda_holds_inner_vertices_softly)
   clear(&f);
   f = of_generator("ball", &two, 0.02);
   ck_assert_int_eq(dvi_regge_solve(f.regge, NULL, f.length, &report), DVI_NOT_CONVERGED);
-  check_words("with Lambda moves of inner vertices are only nearly free");
+  check_words("in curved space the moves of inner vertices are only nearly free");
   clear(&f);
 }
 END_TEST

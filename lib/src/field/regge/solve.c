@@ -1,14 +1,15 @@
 /* Stationary lengths, where the gradient g(l) of the action vanishes for the lengths that are not
  * held.
  *
- * Newton's method with the sparse Hessian H, which is indefinite, and singular near flat solutions,
- * because the moves of an inner vertex change nothing. The step of least norm
+ * KINSOL's Newton method with line search takes the sparse Hessian H, which is indefinite, and
+ * singular near flat solutions, because the moves of an inner vertex change nothing. The step of
+ * least norm
  *
  *     d = -H (H^2 + delta^2)^{-1} g = -Re (H + i delta)^{-1} g
  *
  * (Tikhonov's, from one complex factor) has no part in the null directions, and is Newton's step in
- * those whose eigenvalues are large beside delta. |g|^2 falls along it, so that it is halved until
- * |g| falls and all simplices exist. The null directions are counted by
+ * those whose eigenvalues are large beside delta. |g|^2 falls along it. The null directions are
+ * counted by
  *
  *     log2 |det(H + 2 i delta)/det(H + i delta)| = sum log2((lambda^2 + 4 delta^2)
  *                                                           /(lambda^2 + delta^2))/2,
@@ -22,28 +23,22 @@
 #include "core/status.h"
 #include "field/regge/regge.h"
 #include "num/linear.h"
+#include "solve/nonlinear.h"
 
-enum { ITERATIONS = 60, HALVINGS = 30 };
+enum { ITERATIONS = 100 };
 
 /* The least delta beside the largest entry of H. Roundings of solutions are 1e-16/1e-7 of a
  * step. */
 static const double shift_part = 1e-7;
 
-/* |g| that is no larger beside the sizes of its terms is roundoff: an angle has an error of a
- * rounding, and some ten of them meet at a hinge. */
-static const double roundoff = 16 * DBL_EPSILON;
-
 static const double pi = 3.14159265358979323846;
 
-/* If |g| falls no more, it may be as large as this beside its terms, as in thin simplices. */
+/* |g| may be as large as this beside the sizes of its terms, as in thin simplices. */
 static const double floor_part = 1e-11;
 
-/* If a whole step leaves more than this part of |g|, directions are soft that are not null, and the
- * next steps are damped less. */
+/* If a step leaves more than this part of |g|, directions are soft that are not null, and the next
+ * steps are damped less. */
 static const double slow = 0.5, relief = 0.01;
-
-/* A step must let |g| fall by this part of what Newton's method promises. */
-static const double least_fall = 1e-4;
 
 typedef struct search {
   const dvi_regge *regge;
@@ -52,15 +47,18 @@ typedef struct search {
   int *edge;    /* [unknowns] */
   dvi__pattern pattern;
   int64_t *place; /* [entries of pattern] in the complex's pattern */
-  dvi__linear *linear;
-  double *value;          /* [2*entries of pattern] H + i delta */
-  double *rhs;            /* [2*unknowns] */
-  double *length, *trial; /* [edges] */
-  dvi__regge_sums sums;
-  double delta, damping;
-  int is_least;   /* delta is the least one */
-  int scale_sign; /* 1, but without held lengths and with Lambda that of the square of the scale */
-  double size, terms; /* |g|, and that of the sizes of its terms */
+  dvi__solver *solver;
+  dvi_counters counters;    /* of the solver */
+  double *x;                /* [unknowns] */
+  double *length, *refused; /* [edges] of the last point, and those that do not exist */
+  dvi__regge_sums sums;     /* of the last point */
+  int iterations, most;
+  int is_refused;     /* since the last Jacobian a simplex did not exist */
+  int scale_sign;     /* 1, but without held lengths and with Lambda that of the scale's square */
+  double size, terms; /* |g| of the last point, and that of the sizes of its terms */
+  double before;      /* |g| of the last Jacobian's point */
+  double residual;    /* the largest |g_e| there */
+  double damping;
 } search;
 
 static dvi_status no_memory(void)
@@ -112,21 +110,19 @@ static dvi_status choose_entries(search *s)
 static dvi_status allocate(search *s)
 {
   const dvi_regge *r = s->regge;
-  const int64_t entries = s->pattern.start[s->unknowns];
-  s->value = DVI_NEW(double, 2 * entries);
-  s->rhs = DVI_NEW(double, 2 * s->unknowns);
+  s->x = DVI_NEW(double, s->unknowns);
   s->length = DVI_NEW(double, r->edges);
-  s->trial = DVI_NEW(double, r->edges);
+  s->refused = DVI_NEW(double, r->edges);
   s->sums.deficit = DVI_NEW(double, r->hinges);
   s->sums.size = DVI_NEW(double, r->hinges);
   s->sums.gradient = DVI_NEW(double, r->edges);
   s->sums.terms = DVI_NEW(double, r->edges);
   s->sums.hessian = DVI_NEW(double, r->pattern.start[r->edges]);
-  if (s->value == NULL || s->rhs == NULL || s->length == NULL || s->trial == NULL ||
-      s->sums.deficit == NULL || s->sums.size == NULL || s->sums.gradient == NULL ||
-      s->sums.terms == NULL || s->sums.hessian == NULL)
-    return no_memory();
-  return dvi__linear_create(&s->pattern, DVI__LINEAR_COMPLEX, NULL, &s->linear);
+  return s->x != NULL && s->length != NULL && s->refused != NULL && s->sums.deficit != NULL &&
+                 s->sums.size != NULL && s->sums.gradient != NULL && s->sums.terms != NULL &&
+                 s->sums.hessian != NULL
+             ? DVI_OK
+             : no_memory();
 }
 
 static dvi_status prepare(search *s, const int8_t *held)
@@ -141,15 +137,14 @@ static dvi_status prepare(search *s, const int8_t *held)
 
 static void clear(search *s)
 {
-  dvi__linear_destroy(&s->linear);
+  dvi__solver_destroy(&s->solver);
   dvi__pattern_clear(&s->pattern);
   dvi__release(s->unknown);
   dvi__release(s->edge);
   dvi__release(s->place);
-  dvi__release(s->value);
-  dvi__release(s->rhs);
+  dvi__release(s->x);
   dvi__release(s->length);
-  dvi__release(s->trial);
+  dvi__release(s->refused);
   dvi__release(s->sums.deficit);
   dvi__release(s->sums.size);
   dvi__release(s->sums.gradient);
@@ -157,7 +152,7 @@ static void clear(search *s)
   dvi__release(s->sums.hessian);
 }
 
-/* ---- the iteration ---- */
+/* ---- one point ---- */
 
 /* Squares of gradients with a large Lambda would overflow. */
 static double norm(const search *s, const double *of_edges)
@@ -170,16 +165,27 @@ static double norm(const search *s, const double *of_edges)
 }
 
 /* Evaluate the gradient, and with `all` the Hessian. */
-static dvi_status evaluate(search *s, const double *length, int all)
+static dvi_status evaluate(search *s, int all)
 {
   dvi__regge_sums sums = s->sums;
   if (!all) sums.hessian = NULL;
-  DVI_TRY(dvi__regge_evaluate(s->regge, length, &sums));
+  DVI_TRY(dvi__regge_evaluate(s->regge, s->length, &sums));
   s->sums.action = sums.action;
   s->sums.volume = sums.volume;
   s->size = norm(s, sums.gradient);
   s->terms = norm(s, sums.terms);
   return DVI_OK;
+}
+
+/* Points where simplices do not exist are no failure, but let KINSOL shorten its step. */
+static dvi_status evaluate_at(search *s, const double *x, int all)
+{
+  for (int64_t u = 0; u < s->unknowns; u++) s->length[s->edge[u]] = x[u];
+  const dvi_status status = evaluate(s, all);
+  if (status != DVI_BAD_ARGUMENT) return status;
+  memcpy(s->refused, s->length, (size_t)s->regge->edges * sizeof *s->refused);
+  s->is_refused = 1;
+  return DVI_NOT_CONVERGED;
 }
 
 /* Give the root of the mean square of the unknown lengths. */
@@ -188,58 +194,84 @@ static double typical_length(const search *s)
   return norm(s, s->length) / sqrt((double)s->unknowns);
 }
 
-/* Factor H + i delta, with delta^2 = damping |H| |g|/l, where l is a typical length, or a multiple
- * of the least delta. */
-static dvi_status factor(search *s, double gradient, double multiple)
+static double largest_entry(const search *s)
 {
-  const int entries = s->pattern.start[s->unknowns];
   double most = 0;
-  for (int i = 0; i < entries; i++) most = fmax(most, fabs(s->sums.hessian[s->place[i]]));
-  if (most == 0) return dvi__fail(DVI_SINGULAR, "regge: the Hessian of the action vanishes");
-  const double least = multiple * shift_part * most,
-               delta = most * sqrt(s->damping * (gradient / typical_length(s) / most));
-  s->is_least = delta <= least;
-  s->delta = fmax(delta, least);
+  for (int i = 0; i < s->pattern.start[s->unknowns]; i++)
+    most = fmax(most, fabs(s->sums.hessian[s->place[i]]));
+  return most;
+}
+
+static void set_matrix(const search *s, double delta, double *value)
+{
   for (int64_t u = 0; u < s->unknowns; u++)
     for (int i = s->pattern.start[u]; i < s->pattern.start[u + 1]; i++) {
-      s->value[2 * i] = s->sums.hessian[s->place[i]];
-      s->value[2 * i + 1] = s->pattern.row[i] == u ? s->delta : 0;
+      value[2 * i] = s->sums.hessian[s->place[i]];
+      value[2 * i + 1] = s->pattern.row[i] == u ? delta : 0;
     }
-  return dvi__linear_factor(s->linear, s->value);
 }
 
-/* Set rhs to (H + i delta)^{-1} g, whose real parts are minus the step. */
-static dvi_status find_step(search *s)
+/* ---- the equations ---- */
+
+static dvi_status residual(void *of, const double *x, double *g)
 {
-  for (int64_t u = 0; u < s->unknowns; u++) {
-    s->rhs[2 * u] = s->sums.gradient[s->edge[u]];
-    s->rhs[2 * u + 1] = 0;
-  }
-  return dvi__linear_solve(s->linear, s->rhs);
+  search *s = of;
+  DVI_TRY(evaluate_at(s, x, 0));
+  for (int64_t u = 0; u < s->unknowns; u++) g[u] = s->sums.gradient[s->edge[u]];
+  return DVI_OK;
 }
 
-/* Halve the step until |g| falls. Tells whether it does, and keeps the last refusal of lengths in
- * *refused. Of a whole step, which most are, the Hessian is computed beside the gradient. */
-static dvi_status search_line(search *s, int *falls, dvi_status *refused)
+/* Note how far the iteration came. */
+static void note(search *s)
 {
-  const double before = s->size;
-  double part = 1;
-  *refused = DVI_OK;
-  for (int i = 0; i < HALVINGS; i++, part /= 2) {
-    memcpy(s->trial, s->length, (size_t)s->regge->edges * sizeof *s->trial);
-    for (int64_t u = 0; u < s->unknowns; u++) s->trial[s->edge[u]] -= part * s->rhs[2 * u];
-    const dvi_status status = evaluate(s, s->trial, i == 0);
-    if (status == DVI_BAD_ARGUMENT) *refused = status;
-    if (status != DVI_OK && status != DVI_BAD_ARGUMENT) return status;
-    *falls = status == DVI_OK && s->size < (1 - least_fall * part) * before;
-    if (!*falls) continue;
-    if (i == 0 && s->size > slow * before) s->damping *= relief;
-    memcpy(s->length, s->trial, (size_t)s->regge->edges * sizeof *s->trial);
-    return i == 0 ? DVI_OK : evaluate(s, s->length, 1);
-  }
-  s->damping *= relief;
-  return evaluate(s, s->length, 1);
+  s->before = s->size;
+  s->residual = 0;
+  for (int64_t u = 0; u < s->unknowns; u++)
+    s->residual = fmax(s->residual, fabs(s->sums.gradient[s->edge[u]]));
 }
+
+/* Set H + i delta, with delta^2 = damping |H| |g|/l, where l is a typical length, or the least
+ * delta. */
+static dvi_status jacobian(void *of, const double *x, double *values)
+{
+  search *s = of;
+  DVI_TRY(evaluate_at(s, x, 1));
+  if (s->iterations > 0 && s->size > slow * s->before) s->damping *= relief;
+  note(s);
+  if (s->iterations == s->most)
+    return dvi__fail(DVI_NOT_CONVERGED, "regge: %d iterations were not enough", s->most);
+  s->iterations++;
+  s->is_refused = 0;
+  const double most = largest_entry(s);
+  if (most == 0) return dvi__fail(DVI_SINGULAR, "regge: the Hessian of the action vanishes");
+  const double part = sqrt(s->damping * (s->size / typical_length(s) / most));
+  set_matrix(s, most * fmax(shift_part, part), values);
+  return DVI_OK;
+}
+
+static void magnitudes(void *of, double *magnitude)
+{
+  const search *s = of;
+  for (int64_t u = 0; u < s->unknowns; u++) magnitude[u] = s->sums.terms[s->edge[u]];
+}
+
+static dvi_status row_scale(void *of, double *scale, int *unchanged)
+{
+  const search *s = of;
+  const double most = largest_entry(s);
+  for (int64_t u = 0; u < s->unknowns; u++) scale[u] = most;
+  *unchanged = 0;
+  return DVI_OK;
+}
+
+static dvi_status prepare_nothing(void *of, const double *x)
+{
+  (void)of;
+  (void)x;
+  return DVI_OK;
+}
+
+/* ---- the solution ---- */
 
 /* Without held lengths the sum of l_e dS/dl_e is (n-2) sum |h| eps - n Lambda V. */
 static const char *remedy(const search *s)
@@ -250,22 +282,26 @@ static const char *remedy(const search *s)
   if (s->unknowns == s->regge->edges && s->scale_sign <= 0)
     return "without held lengths (n-2) sum |h| eps = n Lambda V, and the guess has no size for "
            "which both are equal";
-  if (lambda != 0 && s->unknowns < s->regge->edges)
-    return "start from lengths nearer to a solution, such as that of another Lambda, because with "
-           "Lambda moves of inner vertices are only nearly free";
+  if (lambda != 0 || s->regge->n == 4)
+    return "start from lengths nearer to a solution, such as that of another Lambda, because in "
+           "curved space the moves of inner vertices are only nearly free";
   return "start from lengths nearer to a solution";
 }
 
-static dvi_status refuse(const search *s, int iterations, dvi_status refused)
+/* Name the simplex that stopped the iteration, if one did. */
+static dvi_status refuse(const search *s)
 {
-  if (refused == DVI_OK || s->scale_sign <= 0)
+  dvi__regge_sums sums = s->sums;
+  sums.gradient = sums.terms = sums.hessian = NULL;
+  if (!s->is_refused || s->scale_sign <= 0 ||
+      dvi__regge_evaluate(s->regge, s->refused, &sums) == DVI_OK)
     return dvi__fail(DVI_NOT_CONVERGED,
-                     "regge: Newton's method left a gradient of %.2g (iterations: %d): %s", s->size,
-                     iterations, remedy(s));
+                     "regge: Newton's method left a gradient of %.2g (iterations: %d): %s",
+                     s->before, s->iterations, remedy(s));
   return dvi__fail_in(DVI_NOT_CONVERGED,
                       "regge: Newton's method left a gradient of %.2g (iterations: %d): %s; its "
                       "next step leads to lengths that do not exist",
-                      s->size, iterations, remedy(s));
+                      s->before, s->iterations, remedy(s));
 }
 
 static int has_free_scale(const search *s)
@@ -308,43 +344,69 @@ static dvi_status choose_scale(search *s)
   return DVI_OK;
 }
 
-static dvi_status iterate(search *s, int most, int *iterations)
+static dvi_status start(search *s)
 {
-  dvi_status refused = DVI_OK;
-  int falls = 1;
   DVI_TRY(choose_scale(s));
-  DVI_TRY(evaluate(s, s->length, 1));
-  for (*iterations = 0;
-       s->size > roundoff * s->terms && (falls || !s->is_least) && *iterations < most;
-       ++*iterations) {
-    DVI_TRY(factor(s, s->size, 1));
-    DVI_TRY(find_step(s));
-    DVI_TRY(search_line(s, &falls, &refused));
-  }
-  if (s->size <= floor_part * s->terms && !is_collapsed(s)) return DVI_OK;
-  return refuse(s, *iterations, refused);
+  DVI_TRY(evaluate(s, 1));
+  note(s);
+  for (int64_t u = 0; u < s->unknowns; u++) s->x[u] = s->length[s->edge[u]];
+  const dvi__equations equations = {.unknowns = (int)s->unknowns,
+                                    .of = s,
+                                    .pattern = &s->pattern,
+                                    .linear = DVI__LINEAR_COMPLEX,
+                                    .residual = residual,
+                                    .jacobian = jacobian,
+                                    .prepare_chord = prepare_nothing,
+                                    .row_scale = row_scale,
+                                    .magnitudes = magnitudes,
+                                    .renewed = 1};
+  return dvi__solver_create(&equations, &s->counters, &s->solver);
+}
+
+static dvi_status iterate(search *s)
+{
+  dvi__solve_report report;
+  DVI_TRY(start(s));
+  dvi_status status = dvi__solve(s->solver, DVI__KINSOL, 0, 0, 0, s->x, &report);
+  if (status < 0) return status;
+  status = evaluate_at(s, s->x, 1);
+  if (status != DVI_OK || s->size > floor_part * s->terms || is_collapsed(s)) return refuse(s);
+  note(s);
+  return DVI_OK;
 }
 
 /* ---- the report ---- */
 
-/* Compare the determinants at delta and at 2 delta. */
-static dvi_status count_null(search *s, double *sum)
+static dvi_status log_determinant(const search *s, double *value, double delta, double *log)
 {
-  DVI_TRY(factor(s, 0, 1));
-  const double before = dvi__linear_log_determinant(s->linear);
-  DVI_TRY(factor(s, 0, 2));
-  *sum = (dvi__linear_log_determinant(s->linear) - before) / log(2);
+  dvi__linear *linear = dvi__solver_linear(s->solver);
+  set_matrix(s, delta, value);
+  DVI_TRY(dvi__linear_factor(linear, value));
+  *log = dvi__linear_log_determinant(linear);
   return DVI_OK;
 }
 
-static dvi_status solve(search *s, const dvi_regge_options *options, dvi_regge_report *report)
+/* Compare the determinants at delta and at 2 delta. */
+static dvi_status count_null(const search *s, double *softness)
 {
-  const int most = options->iterations > 0 ? options->iterations : ITERATIONS;
-  const dvi_status status = iterate(s, most, &report->iterations);
-  report->action = s->sums.action;
-  report->unknowns = s->unknowns;
-  for (int64_t u = 0; u < s->unknowns; u++)
-    report->residual = fmax(report->residual, fabs(s->sums.gradient[s->edge[u]]));
+  const double delta = shift_part * largest_entry(s);
+  double single = 0, twice = 0,
+         *value = DVI_NEW(double, 2 * (int64_t)s->pattern.start[s->unknowns]);
+  if (value == NULL) return no_memory();
+  dvi_status status = log_determinant(s, value, delta, &single);
+  if (status == DVI_OK) status = log_determinant(s, value, 2 * delta, &twice);
+  dvi__release(value);
+  *softness = (twice - single) / log(2);
+  return status;
+}
+
+static dvi_status solve(search *s, dvi_regge_report *report)
+{
+  const dvi_status status = iterate(s);
+  *report = (dvi_regge_report){.iterations = s->iterations,
+                               .residual = s->residual,
+                               .action = s->sums.action,
+                               .unknowns = s->unknowns};
   if (status != DVI_OK) return status;
   DVI_TRY(count_null(s, &report->softness));
   report->null_directions = llround(report->softness);
@@ -363,11 +425,14 @@ dvi_status dvi_regge_solve(const dvi_regge *regge, const dvi_regge_options *opti
   if (options->iterations < 0)
     return dvi__fail(DVI_BAD_ARGUMENT, "regge: %d iterations are asked, 1 or more are possible",
                      options->iterations);
-  search s = {.regge = regge, .damping = 1, .scale_sign = 1};
+  search s = {.regge = regge,
+              .most = options->iterations > 0 ? options->iterations : ITERATIONS,
+              .damping = 1,
+              .scale_sign = 1};
   dvi_status status = prepare(&s, options->held);
   if (status == DVI_OK) {
     memcpy(s.length, length, (size_t)regge->edges * sizeof *length);
-    status = solve(&s, options, &found);
+    status = solve(&s, &found);
   }
   if (status == DVI_OK) memcpy(length, s.length, (size_t)regge->edges * sizeof *length);
   if (report != NULL) *report = found;
