@@ -63,14 +63,14 @@ START_TEST(deficits_and_turning_sum_to_two_pi_chi)
 }
 END_TEST
 
-/* Angles from lengths have a rounding of 1e-16 each, 3840 of them on the finest sphere. */
+/* So have those from lengths. */
 START_TEST(any_lengths_have_the_same_sum)
 {
   dvi_gauss_bonnet report;
   dvi_mesh *mesh = surface(_i);
   double *length = lengths_of(mesh, 0.2, 7);
   ck_assert_int_eq(dvi_gauss_bonnet_of(mesh, length, &report), DVI_OK);
-  ck_assert_double_le(fabs(report.difference), 1e-14);
+  ck_assert_double_le(fabs(report.difference), 1e-19);
   free(length);
   dvi_mesh_destroy(&mesh);
 }
@@ -165,7 +165,54 @@ START_TEST(angles_of_flat_tetrahedra_have_all_digits)
 }
 END_TEST
 
+static dvi_mesh *one_simplex(int n)
+{
+  double corner[12] = {0};
+  int vertex[4] = {0, 1, 2, 3};
+  for (int i = 0; i < n; i++) corner[(i + 1) * n + i] = 1;
+  const dvi_mesh_terms terms = {.size = sizeof terms,
+                                .dimension = n,
+                                .points = n + 1,
+                                .point = corner,
+                                .cells = 1,
+                                .vertex = vertex};
+  dvi_mesh *mesh = NULL;
+  ck_assert_int_eq(dvi_mesh_create(&terms, &mesh), DVI_OK);
+  return mesh;
+}
+
+/* Two sides of length 1 and one of 2 - 2^-40: the angle between the first two is pi less
+ * 2 acos(1 - 2^-41) = 4 asin(2^-21). */
+START_TEST(deficits_of_thin_triangles_have_all_digits)
+{
+  const double length[] = {1, 1, 2 - ldexp(1, -40)}, exact = 4 * asin(ldexp(1, -21));
+  double deficit[3];
+  dvi_mesh *mesh = one_simplex(2);
+  ck_assert_int_eq(dvi_hinge_deficits(mesh, length, deficit), DVI_OK);
+  ck_assert_double_eq_tol(deficit[0] / exact, 1, 4e-16);
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
+
 /* ---- refusals ---- */
+
+/* The corners of a rectangle, and a triangle whose sides lie on a line. No facet is inside. */
+START_TEST(flat_simplices_are_refused_everywhere)
+{
+  static const double flat[][6] = {{3, 4, 5, 5, 4, 3}, {1, 2, 1, 1, 1, 1}};
+  for (int i = 0; i < 2; i++) {
+    double deficit[6];
+    dvi_mesh *mesh = one_simplex(3);
+    const dvi_connection_options options = {.size = sizeof options, .length = flat[i]};
+    dvi_connection *c = NULL;
+    ck_assert_int_eq(dvi_hinge_deficits(mesh, flat[i], deficit), DVI_BAD_ARGUMENT);
+    check_words("or of a flat one");
+    ck_assert_int_eq(dvi_connection_create(mesh, &options, &c), DVI_BAD_ARGUMENT);
+    check_words("or of a flat one");
+    dvi_mesh_destroy(&mesh);
+  }
+}
+END_TEST
 
 START_TEST(lengths_of_no_simplex_are_refused)
 {
@@ -216,6 +263,8 @@ SUITE(deficit)
   tcase_add_loop_test(tests, regular_polytopes_have_their_deficits, 0, COUNT(polytopes));
   tcase_add_loop_test(tests, flat_spaces_have_no_deficits, 0, 3);
   tcase_add_test(tests, angles_of_flat_tetrahedra_have_all_digits);
+  tcase_add_test(tests, deficits_of_thin_triangles_have_all_digits);
+  tcase_add_test(tests, flat_simplices_are_refused_everywhere);
   tcase_add_test(tests, lengths_of_no_simplex_are_refused);
   tcase_add_test(tests, meshes_without_angles_are_refused);
 }

@@ -95,16 +95,18 @@ FUSED_INLINE dvi__twofold inner_product(int n, const double *length, int i, int 
   return dvi__twofold_scaled(dvi__twofold_plus(sides, dvi__exact_product(-c, c)), 0.5);
 }
 
-/* Set L by Cholesky's method. Returns 0 where the inner products are not positive definite. */
+/* Set L by Cholesky's method. Returns 0 where the inner products are not positive definite, up to
+ * roundings. */
 FUSED static int factor_products(const double *length, dvi__laid_cell *c)
 {
   for (int i = 0; i < c->n; i++) {
+    const double square = inner_product(c->n, length, i + 1, i + 1).head;
     dvi__twofold *row = c->place[i + 1];
     for (int j = 0; j <= i; j++) {
       dvi__twofold rest = inner_product(c->n, length, i + 1, j + 1);
       for (int k = 0; k < j; k++)
         rest = dvi__twofold_less_product(rest, row[k], c->place[j + 1][k]);
-      if (j == i && !(rest.head > 0)) return 0;
+      if (j == i && !(rest.head > dvi__flat_part * square)) return 0;
       row[j] = j == i ? root_of(rest)
                       : dvi__twofold_times(rest, dvi__twofold_inverse(c->place[j + 1][j]));
     }

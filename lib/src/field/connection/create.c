@@ -17,42 +17,63 @@
 /* Own rotations may be wrong by this. */
 static const double rotation_slack = 1e-8;
 
+static dvi_status no_memory(void)
+{
+  return dvi__fail(DVI_NO_MEMORY, "curvature: no memory for a connection");
+}
+
 /* ---- rotations ---- */
 
-FUSED static void join_bases(int n, dvi__twofold s[][DVI_MESH_DIMENSION_MAX],
-                             dvi__twofold t[][DVI_MESH_DIMENSION_MAX], double *R)
+/* `s` [n*n] and t are the bases in both cells. */
+FUSED static void join_bases(int n, const dvi__twofold *s, dvi__twofold t[][DVI_MESH_DIMENSION_MAX],
+                             double *R)
 {
   for (int i = 0; i < n; i++)
     for (int j = 0; j < n; j++) {
       dvi__twofold sum = {0, 0};
-      for (int k = 0; k + 1 < n; k++) sum = dvi__twofold_add_product(sum, t[k][i], s[k][j]);
-      R[i * n + j] = dvi__twofold_less_product(sum, t[n - 1][i], s[n - 1][j]).head;
+      for (int k = 0; k + 1 < n; k++) sum = dvi__twofold_add_product(sum, t[k][i], s[k * n + j]);
+      R[i * n + j] = dvi__twofold_less_product(sum, t[n - 1][i], s[(n - 1) * n + j]).head;
     }
 }
 
-static dvi_status basis_of(const dvi_connection *c, int64_t facet, int64_t cell,
-                           dvi__twofold basis[][DVI_MESH_DIMENSION_MAX])
+/* Join the bases of the facets of a cell to those of cells before it, which `first` [facets*n*n]
+ * keeps. */
+static void join_cell(dvi_connection *c, int64_t cell, const dvi__laid_cell *laid,
+                      dvi__twofold *first)
 {
+  const int n = c->n;
+  for (int slot = 0; slot <= n; slot++) {
+    const int64_t facet = c->mesh->facet[n][cell * (n + 1) + slot];
+    const int *pair = c->mesh->coface + 2 * facet;
+    dvi__twofold basis[DVI_MESH_DIMENSION_MAX][DVI_MESH_DIMENSION_MAX];
+    if (pair[1] < 0) continue;
+    dvi__facet_basis(laid, slot, basis);
+    for (int k = 0; k < n && pair[0] == cell; k++)
+      memcpy(first + (facet * n + k) * n, basis[k], (size_t)n * sizeof *first);
+    if (pair[1] == cell) join_bases(n, first + facet * n * n, basis, c->rotation + facet * n * n);
+  }
+}
+
+/* Lay out each cell once, for its frame in space and, with `first`, its rotations. */
+static dvi_status lay_cells(dvi_connection *c, dvi__twofold *first)
+{
+  const size_t space = (size_t)c->mesh->space;
   dvi__laid_cell laid;
-  int slot = 0;
-  while (c->mesh->facet[c->n][cell * (c->n + 1) + slot] != facet) slot++;
-  DVI_TRY(dvi__lay_cell(c->mesh, c->length, cell, &laid));
-  dvi__facet_basis(&laid, slot, basis);
+  for (int64_t cell = 0; cell < c->mesh->count[c->n]; cell++) {
+    DVI_TRY(dvi__lay_cell(c->mesh, c->length, cell, &laid));
+    for (int i = 0; i < c->n && c->frame != NULL; i++)
+      memcpy(c->frame + (size_t)(cell * c->n + i) * space, laid.frame[i], space * sizeof(double));
+    if (first != NULL) join_cell(c, cell, &laid, first);
+  }
   return DVI_OK;
 }
 
 static dvi_status set_rotations(dvi_connection *c)
 {
-  dvi__twofold s[DVI_MESH_DIMENSION_MAX][DVI_MESH_DIMENSION_MAX],
-      t[DVI_MESH_DIMENSION_MAX][DVI_MESH_DIMENSION_MAX];
-  for (int64_t f = 0; f < c->mesh->count[c->n - 1]; f++) {
-    const int *cell = c->mesh->coface + 2 * f;
-    if (cell[1] < 0) continue;
-    DVI_TRY(basis_of(c, f, cell[0], s));
-    DVI_TRY(basis_of(c, f, cell[1], t));
-    join_bases(c->n, s, t, c->rotation + f * c->n * c->n);
-  }
-  return DVI_OK;
+  dvi__twofold *first = DVI_NEW(dvi__twofold, c->mesh->count[c->n - 1] * c->n * c->n);
+  const dvi_status status = first != NULL ? lay_cells(c, first) : no_memory();
+  dvi__release(first);
+  return status;
 }
 
 static dvi_status copy_rotations(dvi_connection *c, const double *rotation)
@@ -72,20 +93,6 @@ static dvi_status copy_rotations(dvi_connection *c, const double *rotation)
   return DVI_OK;
 }
 
-/* ---- frames ---- */
-
-static dvi_status set_frames(dvi_connection *c)
-{
-  const size_t space = (size_t)c->mesh->space;
-  dvi__laid_cell laid;
-  for (int64_t cell = 0; cell < c->mesh->count[c->n]; cell++) {
-    DVI_TRY(dvi__lay_cell(c->mesh, NULL, cell, &laid));
-    for (int i = 0; i < c->n; i++)
-      memcpy(c->frame + (size_t)(cell * c->n + i) * space, laid.frame[i], space * sizeof(double));
-  }
-  return DVI_OK;
-}
-
 /* ---- all ---- */
 
 static dvi_status allocate(dvi_connection *c, const double *length)
@@ -96,8 +103,7 @@ static dvi_status allocate(dvi_connection *c, const double *length)
     c->length = dvi__duplicate(length, (size_t)c->mesh->count[1], sizeof *length);
   else
     c->frame = DVI_NEW(double, cells * c->n * c->mesh->space);
-  if (c->rotation == NULL || (c->length == NULL && c->frame == NULL))
-    return dvi__fail(DVI_NO_MEMORY, "curvature: no memory for a connection");
+  if (c->rotation == NULL || (c->length == NULL && c->frame == NULL)) return no_memory();
   return DVI_OK;
 }
 
@@ -105,8 +111,12 @@ static dvi_status fill(dvi_connection *c, const dvi_connection_options *options)
 {
   DVI_TRY(allocate(c, options->length));
   DVI_TRY(dvi__rings_create(c->mesh, &c->rings));
-  if (c->frame != NULL) DVI_TRY(set_frames(c));
-  DVI_TRY(options->rotation != NULL ? copy_rotations(c, options->rotation) : set_rotations(c));
+  if (options->rotation != NULL) {
+    DVI_TRY(copy_rotations(c, options->rotation));
+    DVI_TRY(lay_cells(c, NULL));
+  } else {
+    DVI_TRY(set_rotations(c));
+  }
   DVI_TRY(dvi__find_loops(c));
   return options->spin ? dvi__connection_lift(c) : DVI_OK;
 }
@@ -124,7 +134,7 @@ dvi_status dvi_connection_create(const dvi_mesh *mesh, const dvi_connection_opti
                      options->size, sizeof *options);
   DVI_TRY(dvi__check_metric(mesh, options->length));
   dvi_connection *c = DVI_NEW(dvi_connection, 1);
-  if (c == NULL) return dvi__fail(DVI_NO_MEMORY, "curvature: no memory for a connection");
+  if (c == NULL) return no_memory();
   c->mesh = dvi_mesh_share(mesh);
   c->n = mesh->n;
   const dvi_status status = fill(c, options);
@@ -183,12 +193,11 @@ dvi_status dvi__connection_copy(const dvi_connection *connection, dvi_connection
   dvi_connection *c = DVI_NEW(dvi_connection, 1);
   dvi_status status = DVI_OK;
   *copy = NULL;
-  if (c == NULL) return dvi__fail(DVI_NO_MEMORY, "curvature: no memory for a connection");
+  if (c == NULL) return no_memory();
   c->mesh = dvi_mesh_share(connection->mesh);
   c->n = connection->n;
   c->is_own = connection->is_own;
-  if (!copy_arrays(connection, c))
-    status = dvi__fail(DVI_NO_MEMORY, "curvature: no memory for a connection");
+  if (!copy_arrays(connection, c)) status = no_memory();
   if (status == DVI_OK) status = dvi__rings_copy(c->mesh, &connection->rings, &c->rings);
   if (status != DVI_OK) dvi_connection_destroy(&c);
   *copy = c;

@@ -16,17 +16,7 @@ static dvi_status find_angles(const dvi_mesh *mesh, const double *length, int64_
                               dvi__twofold *angle)
 {
   dvi__laid_cell laid;
-  if (length != NULL) {
-    double of_cell[DVI__PAIRS];
-    dvi__measured_simplex measured;
-    dvi__cell_lengths(mesh, length, cell, of_cell);
-    if (!dvi__simplex_measure(mesh->n, of_cell, &measured))
-      return dvi__refuse_lengths(mesh, length, cell);
-    for (int p = 0; p < dvi__pairs(mesh->n); p++)
-      angle[p] = (dvi__twofold){measured.hinge[p].angle, 0};
-    return DVI_OK;
-  }
-  DVI_TRY(dvi__lay_cell(mesh, NULL, cell, &laid));
+  DVI_TRY(dvi__lay_cell(mesh, length, cell, &laid));
   for (int i = 0; i <= mesh->n; i++)
     for (int j = i + 1; j <= mesh->n; j++)
       angle[dvi__pair(mesh->n, i, j)] = dvi__laid_angle(&laid, i, j);

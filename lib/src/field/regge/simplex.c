@@ -9,9 +9,7 @@
 typedef dvi__twofold square_matrix[DVI_MESH_DIMENSION_MAX][DVI_MESH_DIMENSION_MAX];
 typedef dvi__twofold product_matrix[DVI__SIMPLEX_CORNERS][DVI__SIMPLEX_CORNERS];
 
-/* A simplex is flat if an edge leaves no more than this part of its square beside the others. Its
- * products then have no digit left, with those of rounded numbers of twice the digits. */
-static const double flat_part = 1e-28;
+const double dvi__flat_part = 1e-28;
 
 /* Lengths divided by a power of two, so that the largest is below 1. */
 typedef struct scaled_lengths {
@@ -71,7 +69,7 @@ FUSED_INLINE double invert(int k, square_matrix a)
   double determinant = 1, square[DVI_MESH_DIMENSION_MAX];
   for (int i = 0; i < k; i++) square[i] = a[i][i].head;
   for (int j = 0; j < k; j++) {
-    if (!(a[j][j].head > flat_part * square[j])) return 0;
+    if (!(a[j][j].head > dvi__flat_part * square[j])) return 0;
     determinant *= a[j][j].head;
     const dvi__twofold scale = dvi__twofold_inverse(a[j][j]);
     a[j][j] = (dvi__twofold){1, 0};

@@ -20,6 +20,10 @@ enum {
   DVI__PAIRS = 10 /* of corners of a 4-simplex: its edges, and its hinges by what they lack */
 };
 
+/* A simplex is flat if an edge leaves no more than this part of its square beside the others. Its
+ * products then have no digit left, with those of rounded numbers of twice the digits. */
+extern const double dvi__flat_part;
+
 /* Give the number of pairs of corners of an n-simplex, and the number of the pair i < j among
  * (0,1), (0,2) .. (n-1,n). */
 static inline int dvi__pairs(int n)
