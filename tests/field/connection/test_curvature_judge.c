@@ -122,8 +122,50 @@ START_TEST(holonomies_turn_by_the_deficits)
 }
 END_TEST
 
+/* ---- thin simplices ---- */
+
+/* Flat ones, needles, and ones with all corners but two in one place, by 1e-1 to 1e-5. */
+static void thin_lengths(int n, int shape, int seed, double *length)
+{
+  double point[5][4];
+  unsigned long long state = (unsigned)seed;
+  const double part = pow(10, -1 - seed % 5);
+  int e = 0;
+  for (int v = 0; v <= n; v++)
+    for (int a = 0; a < n; a++) {
+      const int is_small = shape == 0 ? a == n - 1 : shape == 1 ? a > 0 : v > 1;
+      point[v][a] = (random_number(&state) - 0.5) * (is_small ? part : 1);
+    }
+  for (int v = 0; v <= n; v++)
+    for (int w = v + 1; w <= n; w++) {
+      double square = 0;
+      for (int a = 0; a < n; a++) square += pow(point[v][a] - point[w][a], 2);
+      length[e++] = sqrt(square);
+    }
+}
+
+/* All hinges are at the boundary, and their deficits pi less small angles or angles near pi. */
+START_TEST(deficits_of_thin_simplices_have_their_digits)
+{
+  const int n = 2 + _i % 3, edges = n * (n + 1) / 2;
+  dvi_mesh *mesh = random_simplex(n, n, NULL, 1);
+  for (int seed = 0; seed < 50; seed++) {
+    double length[10], deficit[10];
+    quad given[10], exact[10], volume[10];
+    thin_lengths(n, _i / 3, seed, length);
+    for (int e = 0; e < edges; e++) given[e] = length[e];
+    (void)quad_hinges(mesh, given, exact, volume);
+    ck_assert_msg(dvi_hinge_deficits(mesh, length, deficit) == DVI_OK, "%s", dvi_last_error());
+    for (int h = 0; h < edges; h++)
+      ck_assert_double_eq_tol(deficit[h] / (double)exact[h], 1, 4e-15);
+  }
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
+
 SUITE(curvature_judge)
 {
   tcase_add_loop_test(tests, deficits_have_their_digits, 0, MESHES);
   tcase_add_loop_test(tests, holonomies_turn_by_the_deficits, 0, MESHES);
+  tcase_add_loop_test(tests, deficits_of_thin_simplices_have_their_digits, 0, 9);
 }

@@ -7,6 +7,7 @@
 #include "field/connection/connection.h"
 #include "support/field/complexes.h"
 #include "support/field/generated.h"
+#include "support/meshes.h"
 #include "support/suite.h"
 
 static const double pi = 3.14159265358979323846;
@@ -262,6 +263,64 @@ START_TEST(loops_may_stay_as_they_come)
 }
 END_TEST
 
+/* ---- random surfaces ---- */
+
+/* Lengths of one side and a fifth more at most are those of triangles. */
+static dvi_connection *random_connection(const dvi_mesh *mesh, unsigned long long *state)
+{
+  const int64_t edges = dvi_mesh_count(mesh, 1);
+  double *length = calloc((size_t)edges, sizeof *length);
+  for (int64_t e = 0; e < edges; e++) length[e] = 1 + 0.2 * random_number(state);
+  const dvi_connection_options options = {.size = sizeof options, .length = length};
+  dvi_connection *c = NULL;
+  ck_assert_msg(dvi_connection_create(mesh, &options, &c) == DVI_OK, "%s", dvi_last_error());
+  free(length);
+  return c;
+}
+
+/* Three different vertices, with indices in N-ths. */
+static void random_singularities(const dvi_mesh *mesh, int N, unsigned long long *state,
+                                 dvi_singularity at[3])
+{
+  const int64_t vertices = dvi_mesh_count(mesh, 0),
+                euler = vertices - dvi_mesh_count(mesh, 1) + dvi_mesh_count(mesh, 2);
+  const int part = (int)vertices / 3;
+  double sum = 0;
+  for (int i = 0; i < 3; i++) {
+    at[i].vertex = i * part + (int)(part * random_number(state));
+    at[i].index = (floor(7 * random_number(state)) - 3) / N;
+    sum += i < 2 ? at[i].index : 0;
+  }
+  at[2].index = (double)euler - sum;
+}
+
+/* Genus 0, 1 and 2, with four symmetries. Indices that do not add up are refused. */
+START_TEST(random_surfaces_have_fields_if_their_indices_add_up)
+{
+  static const char *const name[] = {"icosphere", "torus", "genus-2"};
+  unsigned long long state = (unsigned)_i + 3;
+  dvi_mesh *mesh = surface(name[_i], _i == 1 ? 9 : 1, _i == 1 ? 8 : 0);
+  double *direction = calloc(2 * (size_t)dvi_mesh_count(mesh, 2), sizeof *direction), mismatch;
+  for (int N = 1; N <= 4; N++) {
+    dvi_singularity at[3];
+    dvi_connection *c = random_connection(mesh, &state);
+    random_singularities(mesh, N, &state, at);
+    const dvi_adjust_options options = {
+        .size = sizeof options, .singularity = at, .singularities = 3, .symmetry = N};
+    dvi_connection *adjusted = adjust(c, &options), *none = NULL;
+    ck_assert_int_eq(dvi_connection_directions(adjusted, 0, 1, N, direction, &mismatch), DVI_OK);
+    ck_assert_double_le(mismatch, 20 * roundoff);
+    at[1].index += 1.0 / N;
+    ck_assert_int_eq(dvi_connection_adjust(c, &options, &none), DVI_BAD_ARGUMENT);
+    check_words("the indices sum to");
+    dvi_connection_destroy(&adjusted);
+    dvi_connection_destroy(&c);
+  }
+  free(direction);
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
+
 /* ---- lifts ---- */
 
 /* Lift the rotations of a trivial connection of the icosphere with singularities of one index. */
@@ -380,6 +439,7 @@ SUITE(directions)
   tcase_add_test(tests, adjustments_are_the_least);
   tcase_add_test(tests, constant_fields_of_the_plane_need_no_adjustment);
   tcase_add_test(tests, loops_may_stay_as_they_come);
+  tcase_add_loop_test(tests, random_surfaces_have_fields_if_their_indices_add_up, 0, 3);
   tcase_add_test(tests, half_turns_of_own_rotations_are_lifted_to_either_sense);
   tcase_add_test(tests, own_rotations_whose_shorter_turns_contradict_have_no_lift);
   tcase_add_test(tests, indices_that_no_field_has_are_refused);

@@ -90,6 +90,28 @@ START_TEST(actions_of_unit_edges_have_their_digits)
 }
 END_TEST
 
+/* 1/2 int R of a 3-sphere of radius r is 6 pi^2 r. The 600-cell of the same volume is within 2 %. */
+START_TEST(the_action_is_half_of_the_integral_of_the_scalar_curvature)
+{
+  const dvi_regge_measures m = measures_of("cell-600");
+  const double radius = cbrt(m.volume / (2 * pi * pi));
+  ck_assert_double_eq_tol(m.action / (6 * pi * pi * radius), 1, 0.025);
+}
+END_TEST
+
+/* In three dimensions, without Lambda, dS/dl_e = eps_e. */
+START_TEST(gradients_in_three_dimensions_are_the_deficits)
+{
+  dvi_regge *regge = complex_of("cell-600", NULL, 0);
+  double *length = lengths_of(regge, 0.02), gradient[720], deficit[720];
+  ck_assert_int_eq(dvi_regge_action(regge, length, NULL, gradient), DVI_OK);
+  ck_assert_int_eq(dvi_regge_hinges(regge, length, NULL, deficit), DVI_OK);
+  for (int e = 0; e < 720; e++) ck_assert_double_eq_tol(gradient[e], deficit[e], 1e-15);
+  free(length);
+  dvi_regge_destroy(&regge);
+}
+END_TEST
+
 /* A flat ball: inner deficits vanish, and the action is that of the boundary's curvature. */
 START_TEST(a_flat_complex_has_no_deficits)
 {
@@ -372,6 +394,8 @@ SUITE(action)
 {
   tcase_add_test(tests, regular_polytopes_have_their_deficits_and_actions);
   tcase_add_test(tests, actions_of_unit_edges_have_their_digits);
+  tcase_add_test(tests, the_action_is_half_of_the_integral_of_the_scalar_curvature);
+  tcase_add_test(tests, gradients_in_three_dimensions_are_the_deficits);
   tcase_add_test(tests, a_flat_complex_has_no_deficits);
   tcase_add_loop_test(tests, gradients_are_those_of_differences, 0, 5);
   tcase_add_loop_test(tests, hessians_are_symmetric_and_those_of_differences, 0, 5);
