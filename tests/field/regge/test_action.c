@@ -90,7 +90,8 @@ START_TEST(actions_of_unit_edges_have_their_digits)
 }
 END_TEST
 
-/* 1/2 int R of a 3-sphere of radius r is 6 pi^2 r. The 600-cell of the same volume is within 2 %. */
+/* 1/2 int R of a 3-sphere of radius r is 6 pi^2 r. The 600-cell of the same volume is within
+ * 2 %. */
 START_TEST(the_action_is_half_of_the_integral_of_the_scalar_curvature)
 {
   const dvi_regge_measures m = measures_of("cell-600");
