@@ -401,7 +401,8 @@ static const char *const details[] = {
     "cells, boundary, deficit, and the turns of the holonomy in SO(n) and lifted to Spin(n), which "
     "are empty at the boundary.\n",
     "--singular makes a field of directions on a surface. The indices sum to Euler's "
-    "characteristic, and a vertex of a boundary stands for the whole boundary.\n",
+    "characteristic, and a vertex of a boundary stands for the whole boundary. Without --singular, "
+    "--vtu has directions if Euler's characteristic is 0.\n",
     "Examples:\n"
     "  dvi curvature torus --csv -\n"
     "  dvi curvature cell-600 --hinges edges.csv\n"
@@ -434,8 +435,7 @@ static const option command_options[] = {
     {.name = "vtu",
      OPTION_AT(curvature_request, vtu),
      .value = "FILE",
-     .help = "write directions and deficits; without --singular all indices are 0, and there are "
-             "no directions unless Euler's characteristic is 0"},
+     .help = "write deficits and directions; without --singular all indices are 0"},
     {.name = NULL},
 };
 

@@ -377,12 +377,12 @@ static dvi_status iterate(search *s)
 
 /* ---- the report ---- */
 
-static dvi_status log_determinant(const search *s, double *value, double delta, double *log)
+static dvi_status log_determinant(const search *s, double *value, double delta, double *logarithm)
 {
   dvi__linear *linear = dvi__solver_linear(s->solver);
   set_matrix(s, delta, value);
   DVI_TRY(dvi__linear_factor(linear, value));
-  *log = dvi__linear_log_determinant(linear);
+  *logarithm = dvi__linear_log_determinant(linear);
   return DVI_OK;
 }
 
