@@ -123,6 +123,9 @@ typedef struct dvi__stepper {
   /* set by `step`: the momenta [n] between which it conserves the energy, for the test of its
    * branch. NULL (default) for those of the states before and after it */
   const double *free_p[2];
+  /* set by `step` beside a doubt: what forces supplied to the energy in the step, by the method's
+   * own quadrature. NULL (default) for the mean of the power before and after it */
+  const double *work;
   /* curvature of the equations, the worst of dvi__solve_report; set and reset as `doubt` */
   double bend;
   void *own; /* the method's struct */

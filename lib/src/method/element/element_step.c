@@ -187,6 +187,7 @@ dvi_status dvi__element_create(dvi__stepper *self, const dvi__action_space *spac
   DVI_TRY(dvi__action_create(self->system, space, self->counters, &own->action));
   self->bound = dvi__action_has_preconditioner(own->action);
   own->has_forces = self->system->force_count > 0;
+  own->quadratic = dvi__element_is_quadratic(self->system);
   own->definite = dvi__element_is_definite(self->system, dvi__action_evaluator(own->action));
   self->weighs_damping = self->system->damping > 0;
   if (self->system->place_rows > 0) DVI_TRY(dvi__action_constrain(own->action));
@@ -222,7 +223,7 @@ dvi_status dvi__element_centre(dvi__stepper *self, const dvi__centring *centring
 dvi_status dvi__element_constrain_velocities(dvi__stepper *self, dvi__velocity_rule rule)
 {
   dvi__element *own = self->own;
-  own->definite = 0;
+  own->definite = own->quadratic = 0;
   DVI_TRY(dvi__action_constrain_velocities(own->action, rule));
   return element_renew_solver(self);
 }
@@ -230,7 +231,7 @@ dvi_status dvi__element_constrain_velocities(dvi__stepper *self, dvi__velocity_r
 dvi_status dvi__element_add_term(dvi__stepper *self, const dvi__row_term *term)
 {
   dvi__element *own = self->own;
-  own->definite = 0;
+  own->definite = own->quadratic = 0;
   DVI_TRY(dvi__action_add_term(own->action, term));
   return element_renew_solver(self);
 }
@@ -450,6 +451,16 @@ static int element_sign(const dvi__stepper *self)
   return by_newton ? dvi__linear_sign(dvi__solver_linear(own->solver)) : 0;
 }
 
+/* Find what forces supply, for the user's balances, and for the test of a solution in doubt. */
+static dvi_status element_supply(dvi__stepper *self, const dvi__state *state)
+{
+  const dvi__element *own = self->own;
+  const int is_tested = self->doubt != DVI__SURE && (own->has_forces || self->system->damping > 0);
+  if (is_tested) self->work = own->supply;
+  if (!is_tested && state->supplied == NULL) return DVI_OK;
+  return dvi__action_supplies(own->action, own->Y, own->supply);
+}
+
 dvi_status dvi__element_step(dvi__stepper *self, dvi__state *state, double h)
 {
   dvi__element *own = self->own;
@@ -461,7 +472,7 @@ dvi_status dvi__element_step(dvi__stepper *self, dvi__state *state, double h)
   DVI_TRY(dvi__action_stays_regular(own->action, element_sign(self)));
   dvi__action_forces(own->action, self->memory + dvi__element_forces(self));
   if (own->choice == DVI__SOLVER_CERTIFIED) DVI_TRY(element_certify(self, &at, own->Y, &report));
-  if (state->supplied != NULL) DVI_TRY(dvi__action_supplies(own->action, own->Y, own->supply));
+  DVI_TRY(element_supply(self, state));
   return element_advance(self, state, h);
 }
 

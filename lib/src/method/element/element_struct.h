@@ -45,6 +45,7 @@ typedef struct dvi__element {
   /* a potential without a Hessian, so that fixed-point iteration is the only rung; its name, or
    * NULL */
   const char *without_hessian;
+  int quadratic;  /* the Lagrangian is */
   int has_forces; /* forces without a potential make Jacobians that are not symmetric */
   dvi__solver *solver;
   dvi__newton_form newton;
@@ -86,6 +87,9 @@ dvi_status dvi__element_straight(dvi__stepper *self, const dvi__element_place *a
  * ladder, with the thread's sentence, or DVI_OK. */
 dvi_status dvi__element_follow(dvi__stepper *self, const dvi__element_place *at, dvi_status whole,
                                double *Y);
+
+/* Tell whether the mass is constant, and all potentials are declared quadratic. */
+int dvi__element_is_quadratic(const dvi_system *system);
 
 /* Tell whether the mass makes the symmetric parts of a short step's Jacobian definite. */
 int dvi__element_is_definite(const dvi_system *system, const dvi__evaluator *evaluator);
