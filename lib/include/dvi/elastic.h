@@ -40,7 +40,7 @@ typedef struct dvi_elastic_material {
   const char *part; /**< a part of n-cells. Copied. "all" is one. The last one of a cell counts */
   dvi_elastic_law law;
   double lambda, mu; /**< mu > 0, lambda > -2 mu/n */
-  double mooney;     /**< 0 to mu */
+  double mooney;     /**< 0 to mu, and 0 with other laws */
   double rho;        /**< density of reference, above 0 */
   /** Rayleigh's damping, forces -alpha m u' - beta K u' with the stiffness K at rest. At least 0.
    *  Default: none */
@@ -172,7 +172,8 @@ void dvi_elastic_project(const dvi_elastic *elastic, const double *u, const doub
  *  @retval DVI_BAD_ARGUMENT     the mesh has no such part of n-cells
  *  @retval DVI_SINGULAR         a cell is inverted, where its law is not defined.
  *                               dvi_last_error() names it
- *  @retval DVI_CALLBACK_FAILED  a stored energy or a load failed */
+ *  @retval DVI_CALLBACK_FAILED  a stored energy or a load failed
+ *  @retval DVI_NOT_FINITE       displacements, rates or energies are not finite */
 dvi_status dvi_elastic_energy(const dvi_elastic *elastic, double t, const double *u,
                               const double *rate, const char *part, dvi_elastic_energies *energies);
 

@@ -138,14 +138,16 @@ expect 1 'the same by a mechanical method' run press.yaml --method moreau-jean
 says err 'moreau-jean: step 1[01] .* moves vertex 0 into the obstacle "floor"' 'where'
 sed 's/-t}}}/"-min(t, 0.1)"}}}/' press.yaml >stop.yaml
 expect 0 'a node that stops on a floor' run stop.yaml
-sed 's/y: -t/x: 0/; s/^method:/initial: {u: "[0.1*y, 0]", u'"'"': [1, 0]}\n&/' press.yaml >shear.yaml
+sed 's/y: -t/x: 0/; s/^method:/initial: {u: "[0.1*y, 0]", u'"'"': [1, 0]}\n&/' \
+  press.yaml >shear.yaml
 expect 0 'a start that agrees with its boundary' check shear.yaml
 sed 's/0.1\*y/0.1 + y/' shear.yaml >torn.yaml
 expect 2 'a start that tears nodes apart' check torn.yaml
 says err '^dvi: torn.yaml:6:15: the start moves node 0 by 0.1 along x, .* gives 0;' 'the node'
-sed 's/^boundary:.*/boundary: {bottom: fixed}\nloads: {bottom: {traction: [1, 0]}}/' press.yaml >idle.yaml
+sed 's/^boundary:.*/boundary: {bottom: fixed}\nloads: {bottom: {traction: [1, 0]}}/' \
+  press.yaml >idle.yaml
 expect 2 'a load on what is held' check idle.yaml
-says err '^dvi: idle.yaml:5:8: .*load on part "bottom" does nothing, .* all displacements' 'the load'
+says err '^dvi: idle.yaml:5:8: .*part "bottom" does nothing, .* all displacements' 'the load'
 
 # What there is not is refused.
 expect 2 'another march' run block.yaml --method leapfrog
