@@ -149,6 +149,18 @@ sed 's/^boundary:.*/boundary: {bottom: fixed}\nloads: {bottom: {traction: [1, 0]
 expect 2 'a load on what is held' check idle.yaml
 says err '^dvi: idle.yaml:5:8: .*part "bottom" does nothing, .* all displacements' 'the load'
 
+# Slips have their remedies.
+slip() { # NAME SED-COMMAND WORDS: what a slip in drop.yaml is told
+  sed "$2" drop.yaml >slip.yaml
+  expect 2 "$1" check slip.yaml
+  says err "$3" "$1"
+}
+slip 'gravity' 's/gravity/gravitty/' "slip.yaml:6:9: a load is 'gravity', .*mean gravity?"
+slip 'a force on a side' 's/{gravity.*/{left: {force: [0, 0, 1]}}/' "'left' has no volume"
+slip 'a law' 's/svk/neohookean/' 'a law is linear, svk, .*; did you mean neo-hookean?'
+slip 'a probe' 's/^method/probes: {c: {of: stres, at: [0, 0, 0.1]}}\n&/' 'did you mean stress?'
+slip 'gravity in a plane' 's/-9.81/0, -9.81/' 'gravity has 3 coordinates here, not 4'
+
 # What there is not is refused.
 expect 2 'another march' run block.yaml --method leapfrog
 says err 'solids have avi and verlet' 'which marches there are'

@@ -141,7 +141,8 @@ bool dvi__tree_word(dvi_scene *scene, const dvi__tree *tree, const char *what, i
   if (!dvi__want_text(scene, tree, what)) return false;
   for (*which = 0; *which < count; ++*which)
     if (strcmp(tree->text, word[*which]) == 0) return true;
-  char list[128];
+  char list[128], hint[64];
   (void)dvi__list_words(count, word, " or ", list, sizeof list);
-  return dvi__scene_refuse(scene, tree->span, "%s is %s", what, list);
+  return dvi__scene_refuse(scene, tree->span, "%s is %s%s", what, list,
+                           dvi__nearest(tree->text, count, word, hint, sizeof hint));
 }
