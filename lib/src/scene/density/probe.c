@@ -3,7 +3,6 @@
 #include <string.h>
 
 #include "scene/density/scene_density.h"
-#include "scene/field/scene_field.h"
 #include "scene/sections/columns.h"
 #include "scene/sections/sections.h"
 #include "text/heap.h"

@@ -69,10 +69,6 @@ bool dvi__place_vector_read(dvi_scene *scene, const dvi__tree *tree, int count, 
 /* A callback that evaluates all of them. `user` is the vector. */
 int dvi__place_vector_value(const double *x, double *value, void *user);
 
-/* Read a point, or a direction, of `count` numbers. */
-bool dvi__point_read(dvi_scene *scene, const dvi__tree *tree, int count, const char *what,
-                     double *point);
-
 /* A number that each cell has: its name, and its value where nothing is said. */
 typedef struct dvi__quantity {
   const char *name;

@@ -135,6 +135,19 @@ bool dvi__tree_whole(dvi_scene *scene, const dvi__tree *tree, const char *what, 
   return true;
 }
 
+bool dvi__point_read(dvi_scene *scene, const dvi__tree *tree, int count, const char *what,
+                     double *point)
+{
+  const bool is_list = tree->kind == DVI__SEQUENCE;
+  if ((is_list ? tree->count : 1) != count || tree->kind == DVI__MAPPING)
+    return dvi__scene_refuse(scene, tree->span, "%s has %d coordinate%s here, not %d", what, count,
+                             count == 1 ? "" : "s", is_list ? tree->count : 1);
+  for (int l = 0; l < count; l++)
+    if (!dvi__tree_number(scene, is_list ? tree->child[l] : tree, "a coordinate", point + l))
+      return false;
+  return true;
+}
+
 bool dvi__tree_word(dvi_scene *scene, const dvi__tree *tree, const char *what, int count,
                     const char *const *word, int *which)
 {
