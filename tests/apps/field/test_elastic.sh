@@ -38,6 +38,10 @@ says out '^cost: .* evaluations of cells' 'cells against those of equal steps'
 sed 's/grading: 2/grading: 3.5/' block.yaml >graded.yaml
 expect 0 'stable steps' stability graded.yaml
 says out '^  avi  *3 classes of steps, .* 1\.000000000 .*  stable$' 'no growth'
+expect 0 'steps by class' explain graded.yaml
+says out '^ *step  *cells  evaluations in a unit of time$' 'classes'
+says out '^ *0.0175439  *24  1368$' 'the shortest steps'
+says out '^ *0.0701754  *24  342$' 'the longest ones'
 expect 0 'a resonance' stability graded.yaml --fraction 0.9 --method avi --method avi:classes=no
 says out '^  avi  *3 classes of steps, .* 1\.036976866 .*  grows$' 'growth in classes'
 says out '^  avi:classes=no .* without a common period .*  grows$' 'growth of free steps'
@@ -160,6 +164,13 @@ slip 'a force on a side' 's/{gravity.*/{left: {force: [0, 0, 1]}}/' "'left' has 
 slip 'a law' 's/svk/neohookean/' 'a law is linear, svk, .*; did you mean neo-hookean?'
 slip 'a probe' 's/^method/probes: {c: {of: stres, at: [0, 0, 0.1]}}\n&/' 'did you mean stress?'
 slip 'gravity in a plane' 's/-9.81/0, -9.81/' 'gravity has 3 coordinates here, not 4'
+
+# The scenes that are shipped. The bar has its own frequency of 1.4.
+scenes=$(dirname "$0")/../../../apps/scenes/solids
+expect 0 'a block that bounces' run "$scenes/bouncing-block.yaml" --final
+says out '^1,0\.2[0-9.]*,.*,1[0-9][0-9],0\.96' 'hits, and how far it slides'
+expect 0 'a bar that is shaken' run "$scenes/shaken-bar.yaml" --final
+says out '^10,.*,-\{0,1\}0.0' 'its end'
 
 # What there is not is refused.
 expect 2 'another march' run block.yaml --method leapfrog

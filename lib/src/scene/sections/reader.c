@@ -110,17 +110,22 @@ const char *dvi__word_of(const dvi_scene *scene, const dvi__expression *e)
   return size > 0 && strncmp(e->name, part->prefix, size) == 0 ? e->name + size : e->name;
 }
 
-bool dvi__tree_number(dvi_scene *scene, const dvi__tree *tree, const char *what, double *number)
+static bool read_number(dvi_scene *scene, const dvi__expression *e, const char *what,
+                        double *number)
 {
-  const dvi__expression *e;
   dvi__context c;
   dvi__node node;
-  if (!dvi__tree_expression(scene, tree, &e) || !dvi__context_make(&c, scene, 0, what))
-    return false;
+  if (!dvi__context_make(&c, scene, 0, what)) return false;
   const bool good = dvi__elaborate_number(&c, e, &node) &&
                     dvi__constants_of(&c, e, dvi__number_value(node), number);
   dvi__context_free(&c);
   return good;
+}
+
+bool dvi__tree_number(dvi_scene *scene, const dvi__tree *tree, const char *what, double *number)
+{
+  const dvi__expression *e;
+  return dvi__tree_expression(scene, tree, &e) && read_number(scene, e, what, number);
 }
 
 bool dvi__tree_whole(dvi_scene *scene, const dvi__tree *tree, const char *what, int least,
@@ -138,13 +143,14 @@ bool dvi__tree_whole(dvi_scene *scene, const dvi__tree *tree, const char *what, 
 bool dvi__point_read(dvi_scene *scene, const dvi__tree *tree, int count, const char *what,
                      double *point)
 {
-  const bool is_list = tree->kind == DVI__SEQUENCE;
-  if ((is_list ? tree->count : 1) != count || tree->kind == DVI__MAPPING)
+  const dvi__expression *e;
+  if (!dvi__tree_expression(scene, tree, &e)) return false;
+  const bool is_list = e->form == DVI__FORM_LIST;
+  if ((is_list ? e->count : 1) != count)
     return dvi__scene_refuse(scene, tree->span, "%s has %d coordinate%s here, not %d", what, count,
-                             count == 1 ? "" : "s", is_list ? tree->count : 1);
+                             count == 1 ? "" : "s", is_list ? e->count : 1);
   for (int l = 0; l < count; l++)
-    if (!dvi__tree_number(scene, is_list ? tree->child[l] : tree, "a coordinate", point + l))
-      return false;
+    if (!read_number(scene, is_list ? e->part[l] : e, "a coordinate", point + l)) return false;
   return true;
 }
 
