@@ -7,6 +7,7 @@
 #include "core/status.h"
 #include "field/algebra/largest.h"
 #include "field/elastic/rigid.h"
+#include "field/elastic/system.h"
 
 enum { DEFAULT_COUNT = 6 };
 
@@ -28,15 +29,15 @@ static dvi_matrix view_diagonal(int64_t rows, const double *value)
 
 /* ---- the fastest one ---- */
 
-static dvi_status find_fastest(const dvi_elastic *e, const dvi__csr *K, const double *mass,
-                               double *omega)
+dvi_status dvi__solid_find_fastest(const dvi_elastic *e, const dvi__csr *K, const double *mass)
 {
   double bound = 0;
   const dvi_matrix stiffness = dvi__csr_view(K, 1), diagonal = view_diagonal(e->unknowns, mass);
   const dvi__pencil pencil = {.K = &stiffness, .M = &diagonal, .dimension = e->n};
-  const dvi_status status = dvi__largest_eigenvalue(&pencil, &bound);
-  *omega = sqrt(fmax(bound, 0));
-  return status;
+  if (e->fastest > 0) return DVI_OK;
+  DVI_TRY(dvi__largest_eigenvalue(&pencil, &bound));
+  ((dvi_elastic *)e)->fastest = sqrt(fmax(bound, 0)); /* the same in every thread */
+  return DVI_OK;
 }
 
 dvi_status dvi_elastic_fastest(const dvi_elastic *elastic, double *omega)
@@ -45,14 +46,15 @@ dvi_status dvi_elastic_fastest(const dvi_elastic *elastic, double *omega)
     return dvi__fail(DVI_BAD_ARGUMENT, "elastic: a solid and a place for a frequency are needed");
   dvi__csr K = {0};
   double *mass = NULL;
+  dvi_status status = DVI_OK;
+  if (!(elastic->fastest > 0)) {
+    status = dvi__solid_rest_stiffness(elastic, &K);
+    if (status == DVI_OK) status = make_mass(elastic, &mass);
+    if (status == DVI_OK) status = dvi__solid_find_fastest(elastic, &K, mass);
+  }
   *omega = elastic->fastest;
-  if (*omega > 0) return DVI_OK;
-  DVI_TRY(dvi__solid_rest_stiffness(elastic, &K));
-  dvi_status status = make_mass(elastic, &mass);
-  if (status == DVI_OK) status = find_fastest(elastic, &K, mass, omega);
   dvi__csr_clear(&K);
   dvi__release(mass);
-  if (status == DVI_OK) ((dvi_elastic *)elastic)->fastest = *omega; /* the same in every thread */
   return status;
 }
 
