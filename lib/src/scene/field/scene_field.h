@@ -91,6 +91,9 @@ typedef bool dvi__part_reader(dvi_scene *scene, const char *part, dvi__span span
                               const dvi__tree *tree);
 bool dvi__read_by_part(dvi_scene *scene, const dvi__tree *section, dvi__part_reader *read);
 
+/* Read materials by part. "all" is read first, so that parts replace it. */
+bool dvi__read_all_first(dvi_scene *scene, const dvi__tree *section, dvi__part_reader *read);
+
 /* Refuse the name of a part that the mesh has not, and list those that it has. */
 bool dvi__refuse_part(dvi_scene *scene, dvi__span span, const char *name, bool of_cells);
 
