@@ -125,6 +125,39 @@ sed 's/all: {law: svk, lambda: 1, mu: 1}, //' two.yaml >part.yaml
 expect 2 'a cell without a material' run part.yaml
 says err '^dvi: part.yaml:3:12: .*triangle .* has no material' 'the cell'
 
+# Two tetrahedra with a common edge have the motions of one body, and turn about the edge.
+cat >edge.msh <<END
+\$MeshFormat
+2.2 0 8
+\$EndMeshFormat
+\$Nodes
+6
+1 0 0 0
+2 0 0 1
+3 1 0 0
+4 0 1 0
+5 -1 0 0
+6 0 -1 0
+\$EndNodes
+\$Elements
+2
+1 4 2 1 1 1 2 3 4
+2 4 2 1 1 1 2 5 6
+\$EndElements
+END
+cat >edge.yaml <<END
+mesh: {file: edge.msh}
+field: elastic
+materials: {all: {law: svk, young: 10, poisson: 0.3}}
+method: avi
+step: {fraction: 0.5}
+until: 1
+END
+expect 0 'modes of a hinge' modes edge.yaml --count 4
+says out '^left out: 6 of frequency zero$' 'motions of one body'
+says out '^ *1  *-\{0,1\}[0-9.]*e-1[0-9]  *[0-9]' 'a turn about the edge'
+says out '^ *2  *15.3846' 'the lowest vibration'
+
 # What is given agrees with the rest of a scene.
 cat >press.yaml <<END
 mesh: {generator: kuhn, cells: [2, 2]}

@@ -91,14 +91,37 @@ static double shift_below_zero(const modes *m)
   return -0.1 * k / mass * pow((double)e->vertices, -2.0 / e->n);
 }
 
-/* Move the modes that are not rigid motions to the front. Returns their number. */
+static double product(const modes *m, const double *x, const double *y)
+{
+  double sum = 0;
+  for (int64_t i = 0; i < m->elastic->unknowns; i++) sum += x[i] * m->mass[i] * y[i];
+  return sum;
+}
+
+/* Take rigid motions, and the modes that were kept, out of a mode. Returns 0 if nothing is left. */
+static int purify(const modes *m, int kept, double *x)
+{
+  const int64_t n = m->elastic->unknowns;
+  dvi__rigid_remove(&m->rigid, x);
+  for (int k = 0; k < kept; k++) {
+    const double *other = m->vector + k * n, part = product(m, x, other);
+    for (int64_t i = 0; i < n; i++) x[i] -= part * other[i];
+  }
+  const double square = product(m, x, x);
+  if (square < 1e-3) return 0;
+  for (int64_t i = 0; i < n; i++) x[i] /= sqrt(square);
+  return 1;
+}
+
+/* Move the modes that are not rigid motions to the front. Where parts of a body turn about each
+ * other, their turns, of frequency 0, come mixed with these. Returns their number. */
 static int drop_rigid(modes *m)
 {
   const size_t n = (size_t)m->elastic->unknowns;
   int kept = 0;
   for (int i = 0; i < m->asked; i++) {
-    const double *x = m->vector + (size_t)i * n;
-    if (dvi__rigid_share(&m->rigid, x) > 0.5) continue;
+    double *x = m->vector + (size_t)i * n;
+    if (dvi__rigid_share(&m->rigid, x) > 1e-6 && !purify(m, kept, x)) continue;
     m->value[kept] = m->value[i];
     if (kept != i) memcpy(m->vector + (size_t)kept * n, x, n * sizeof *x);
     kept++;
