@@ -124,7 +124,7 @@ static bool read_number(dvi_scene *scene, const dvi__expression *e, const char *
 
 bool dvi__tree_number(dvi_scene *scene, const dvi__tree *tree, const char *what, double *number)
 {
-  const dvi__expression *e;
+  const dvi__expression *e = NULL;
   return dvi__tree_expression(scene, tree, &e) && read_number(scene, e, what, number);
 }
 
@@ -143,8 +143,8 @@ bool dvi__tree_whole(dvi_scene *scene, const dvi__tree *tree, const char *what, 
 bool dvi__point_read(dvi_scene *scene, const dvi__tree *tree, int count, const char *what,
                      double *point)
 {
-  const dvi__expression *e;
-  if (!dvi__tree_expression(scene, tree, &e)) return false;
+  const dvi__expression *e = NULL;
+  if (!dvi__tree_expression(scene, tree, &e) || e == NULL) return false;
   const bool is_list = e->form == DVI__FORM_LIST;
   if ((is_list ? e->count : 1) != count)
     return dvi__scene_refuse(scene, tree->span, "%s has %d coordinate%s here, not %d", what, count,
