@@ -134,7 +134,7 @@ static dvi_status attempt_step(dvi_integrator *I, double length, double density)
   memcpy(I->stepper.memory, I->memory_before, I->stepper.memory_count * sizeof(double));
   I->next.density = density;
   I->stepper.doubt = DVI__SURE;
-  I->stepper.bend = 0;
+  I->stepper.bend = I->stepper.worked = 0;
   I->stepper.work = NULL;
   return dvi__take_step(&I->stepper, &I->next, length);
 }

@@ -184,6 +184,22 @@ static dvi_elastic *damped_bar(dvi_elastic_law law, double alpha, int sways)
       (dvi_elastic_terms){.condition = &left, .conditions = 1, .load = &weight, .loads = 1});
 }
 
+/* Compositions know the work of the damping in their inner steps. */
+START_TEST(no_damping_makes_a_composition_too_large)
+{
+  for (int law = DVI_ELASTIC_SVK; law <= DVI_ELASTIC_NEO_HOOKEAN; law++) {
+    dvi_elastic *solid = damped_bar((dvi_elastic_law)law, 40, 0);
+    dvi_system *system = system_of_solid(solid);
+    dvi_integrator *integrator = start_solid(solid, system, "composition:order=4,base=midpoint",
+                                             NULL);
+    advance(integrator, 0.02, 2);
+    dvi_integrator_destroy(&integrator);
+    dvi_system_destroy(&system);
+    dvi_elastic_destroy(&solid);
+  }
+}
+END_TEST
+
 /* A step has one solution. It is 20 and more times as long as the fastest vibrations, and damping
  * and the moving end change the energy by much of its kinetic part. Steps of linear laws are not
  * even doubted. */
@@ -292,6 +308,7 @@ SUITE(elastic_motion)
   tcase_add_loop_test(tests, momenta_stay_and_the_energy_swings, 0, DVI_ELASTIC_ENERGY);
   tcase_add_test(tests, rayleighs_damping_of_a_mode_is_that_of_an_oscillator);
   tcase_add_loop_test(tests, no_damping_and_no_driving_makes_a_step_too_large, 0, 2);
+  tcase_add_test(tests, no_damping_makes_a_composition_too_large);
   tcase_add_test(tests, a_block_that_falls_rebounds);
   tcase_add_test(tests, a_block_with_friction_rebounds_with_a_part_of_its_energy);
 }

@@ -455,7 +455,8 @@ static int element_sign(const dvi__stepper *self)
 static dvi_status element_supply(dvi__stepper *self, const dvi__state *state)
 {
   const dvi__element *own = self->own;
-  const int is_tested = self->doubt != DVI__SURE && (own->has_forces || self->system->damping > 0);
+  const int is_tested = (self->doubt != DVI__SURE || self->asks_work) &&
+                        (own->has_forces || self->system->damping > 0);
   if (is_tested) self->work = own->supply;
   if (!is_tested && state->supplied == NULL) return DVI_OK;
   return dvi__action_supplies(own->action, own->Y, own->supply);
