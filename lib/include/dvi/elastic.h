@@ -83,7 +83,8 @@ typedef enum dvi_obstacle_kind {
 
 /** A rigid obstacle, which a node hits at the time when it reaches it. A hit changes the node's
  *  velocity v along the outer normal from -v_n to e v_n, and friction takes at most mu (1 + e) v_n
- *  from its velocity along the surface (Fetecau, Marsden, Ortiz and West 2003). */
+ *  from its velocity along the surface (Fetecau, Marsden, Ortiz and West 2003). A node that a
+ *  condition moves into an obstacle ends the run with DVI_CALLBACK_FAILED. */
 typedef struct dvi_obstacle {
   const char *name; /**< copied. Used in messages */
   dvi_obstacle_kind kind;
@@ -126,7 +127,8 @@ extern "C" {
 /** Create a solid.
  *
  *  @retval DVI_BAD_ARGUMENT     a cell has no material, a constant is out of its range, a part is
- *                               missing, all is held, or an argument is not as described.
+ *                               missing, all is held, all of a load on facets acts on what is held,
+ *                               or an argument is not as described.
  *                               dvi_last_error() names the material, the part or the cell
  *  @retval DVI_UNSUPPORTED      the mesh has no triangles in a plane or tetrahedra in space, or
  *                               repeats itself
