@@ -184,6 +184,23 @@ static dvi_elastic *damped_bar(dvi_elastic_law law, double alpha, int sways)
       (dvi_elastic_terms){.condition = &left, .conditions = 1, .load = &weight, .loads = 1});
 }
 
+/* The energy of a driven bar is balanced by the work of its condition. Its steps are doubted for
+ * their motion alone, and soon no more. */
+START_TEST(driven_steps_are_seldom_followed)
+{
+  dvi_counters counters;
+  dvi_elastic *solid = damped_bar(DVI_ELASTIC_SVK, 1, 1);
+  dvi_system *system = system_of_solid(solid);
+  dvi_integrator *integrator = start_solid(solid, system, "midpoint", NULL);
+  advance(integrator, 0.005, 100);
+  dvi_integrator_counters(integrator, &counters);
+  ck_assert_int_lt(counters.followed, 15);
+  dvi_integrator_destroy(&integrator);
+  dvi_system_destroy(&system);
+  dvi_elastic_destroy(&solid);
+}
+END_TEST
+
 /* Compositions know the work of the damping in their inner steps. */
 START_TEST(no_damping_makes_a_composition_too_large)
 {
@@ -308,6 +325,7 @@ SUITE(elastic_motion)
   tcase_add_loop_test(tests, momenta_stay_and_the_energy_swings, 0, DVI_ELASTIC_ENERGY);
   tcase_add_test(tests, rayleighs_damping_of_a_mode_is_that_of_an_oscillator);
   tcase_add_loop_test(tests, no_damping_and_no_driving_makes_a_step_too_large, 0, 2);
+  tcase_add_test(tests, driven_steps_are_seldom_followed);
   tcase_add_test(tests, no_damping_makes_a_composition_too_large);
   tcase_add_test(tests, a_block_that_falls_rebounds);
   tcase_add_test(tests, a_block_with_friction_rebounds_with_a_part_of_its_energy);

@@ -187,6 +187,7 @@ dvi_status dvi__element_create(dvi__stepper *self, const dvi__action_space *spac
   DVI_TRY(dvi__action_create(self->system, space, self->counters, &own->action));
   self->bound = dvi__action_has_preconditioner(own->action);
   own->has_forces = self->system->force_count > 0;
+  own->has_rates = !self->system->autonomous && dvi__system_has_rates(self->system) == DVI_OK;
   own->quadratic = dvi__element_is_quadratic(self->system);
   own->definite = dvi__element_is_definite(self->system, dvi__action_evaluator(own->action));
   self->weighs_damping = self->system->damping > 0;
@@ -451,15 +452,21 @@ static int element_sign(const dvi__stepper *self)
   return by_newton ? dvi__linear_sign(dvi__solver_linear(own->solver)) : 0;
 }
 
-/* Find what forces supply, for the user's balances, and for the test of a solution in doubt. */
+/* Find what forces supply, for the user's balances, and with what time supplies for the test of a
+ * solution in doubt. */
 static dvi_status element_supply(dvi__stepper *self, const dvi__state *state)
 {
-  const dvi__element *own = self->own;
-  const int is_tested = (self->doubt != DVI__SURE || self->asks_work) &&
-                        (own->has_forces || self->system->damping > 0);
-  if (is_tested) self->work = own->supply;
+  dvi__element *own = self->own;
+  const int is_balanced = own->has_forces || self->system->damping > 0 || own->has_rates,
+            is_tested = is_balanced && (self->doubt != DVI__SURE || self->asks_work);
+  double driving = 0;
   if (!is_tested && state->supplied == NULL) return DVI_OK;
-  return dvi__action_supplies(own->action, own->Y, own->supply);
+  DVI_TRY(dvi__action_supplies(own->action, own->Y, own->supply));
+  if (!is_tested) return DVI_OK;
+  if (own->has_rates) DVI_TRY(dvi__action_driving(own->action, own->Y, &driving));
+  own->work = own->supply[0] + driving;
+  self->work = &own->work;
+  return DVI_OK;
 }
 
 dvi_status dvi__element_step(dvi__stepper *self, dvi__state *state, double h)

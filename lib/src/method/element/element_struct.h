@@ -47,6 +47,7 @@ typedef struct dvi__element {
   const char *without_hessian;
   int quadratic;  /* the Lagrangian is */
   int has_forces; /* forces without a potential make Jacobians that are not symmetric */
+  int has_rates;  /* the Lagrangian depends on time, and tells its rate */
   dvi__solver *solver;
   dvi__newton_form newton;
   int choice;     /* choice of the solver */
@@ -58,6 +59,7 @@ typedef struct dvi__element {
   const dvi__element_place *forces_of;
   double *dq, *dq_low, *dp;
   double *supply; /* [1 + symmetries] what forces supply in the step */
+  double work;    /* what forces and time supply to the energy */
   double *guess;  /* [unknowns] guess of the iteration, in charts */
   double *branch; /* [DVI__BRANCH_ROOM * unknowns] work to follow a branch, NULL until needed */
 } dvi__element;
