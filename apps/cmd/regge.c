@@ -76,22 +76,22 @@ static int64_t find_edge(const study *s, double from, double to)
   return -1;
 }
 
-/* `row` [edges] has the rows that edges have been found in, or 0. */
-static int take_lengths(study *s, const series_table *table, const char *path, int *row)
+/* `line` [edges] has the lines of the file that edges have been found in, or 0. */
+static int take_lengths(study *s, const series_table *table, const char *path, int *line)
 {
   const double *from = table->column[0].value, *to = table->column[1].value,
                *length = table->column[2].value;
   for (int i = 0; i < table->rows; i++) {
     const int64_t edge = find_edge(s, from[i], to[i]);
     if (edge < 0)
-      return usage_error("regge: '%s': row %d: no edge joins the vertices %g and %g", path, i + 1,
+      return usage_error("regge: '%s': line %d: no edge joins the vertices %g and %g", path, i + 2,
                          from[i], to[i]);
     if (isnan(length[i]))
-      return usage_error("regge: '%s': row %d has no number in column 'length'", path, i + 1);
-    if (row[edge] != 0)
-      return usage_error("regge: '%s': rows %d and %d are of one edge, of the vertices %g and %g",
-                         path, row[edge], i + 1, from[i], to[i]);
-    row[edge] = i + 1;
+      return usage_error("regge: '%s': line %d has no number in column 'length'", path, i + 2);
+    if (line[edge] != 0)
+      return usage_error("regge: '%s': lines %d and %d are of one edge, of the vertices %g and %g",
+                         path, line[edge], i + 2, from[i], to[i]);
+    line[edge] = i + 2;
     s->length[edge] = length[i];
   }
   return DONE;
@@ -108,10 +108,10 @@ static int read_lengths(study *s)
   for (int i = 0; i < 3 && code == DONE; i++)
     if (series_want(&table, name[i]) < 0) code = FAILED;
   if (code == DONE) code = series_read("regge", path, &table);
-  int *row = calloc((size_t)s->edges, sizeof *row);
+  int *line = calloc((size_t)s->edges, sizeof *line);
   if (code == DONE)
-    code = row != NULL ? take_lengths(s, &table, path, row) : library_error(DVI_NO_MEMORY);
-  free(row);
+    code = line != NULL ? take_lengths(s, &table, path, line) : library_error(DVI_NO_MEMORY);
+  free(line);
   series_clear(&table);
   return code;
 }

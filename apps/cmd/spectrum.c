@@ -121,8 +121,8 @@ static int copy_series(spectrum_study *s)
     for (int i = 0; i < s->samples; i++) {
       const double value = column->value[s->first + i];
       if (isnan(value))
-        return usage_error("spectrum: '%s': row %d has no number in column '%s'", s->path,
-                           s->first + i + 1, column->name);
+        return usage_error("spectrum: '%s': line %d has no number in column '%s'", s->path,
+                           s->first + i + 2, column->name);
       s->series[(size_t)p * (size_t)s->samples + (size_t)i] = value;
     }
     p++;

@@ -71,6 +71,42 @@ static double measure_cost(const problem *scene, const char *method, double frac
   return rate;
 }
 
+/* Tell how many cells have each step of a march whose steps are powers of 2 of the shortest one. In
+ * the slot 2^j all cells of steps up to 2^j have an event. */
+static void tell_classes(dvi_march *march)
+{
+  dvi_march_facts before, after;
+  dvi_march_facts_of(march, &before);
+  const double shortest = before.step, longest = before.longest;
+  int64_t shorter = 0;
+  (void)printf("%12s  %10s  evaluations in a unit of time\n", "step", "cells");
+  for (double slots = 1.0; slots * shortest <= longest * (1.0 + 1e-9); slots *= 2.0) {
+    if (dvi_march_advance(march, (slots - 0.5) * shortest) != DVI_OK) return;
+    dvi_march_facts_of(march, &before);
+    if (dvi_march_advance(march, (slots + 0.25) * shortest) != DVI_OK) return;
+    dvi_march_facts_of(march, &after);
+    const int64_t cells = after.updates - before.updates - shorter;
+    (void)printf("%12.6g  %10lld  %.4g\n", slots * shortest, (long long)cells,
+                 (double)cells / (slots * shortest));
+    shorter += cells;
+  }
+}
+
+/* Tell the same of a method, unless its cells have one step, or any. */
+static void tell_classes_of(const problem *scene, const char *method, double fraction)
+{
+  const dvi_march_options options = {
+      .size = sizeof options, .method = method, .fraction = fraction};
+  dvi_march_facts facts;
+  dvi_march *march = NULL;
+  if (strncmp(method, "avi", 3) != 0 || strstr(method, "classes=no") != NULL ||
+      dvi_scene_march_create(scene->scene, &options, &march) != DVI_OK)
+    return;
+  dvi_march_facts_of(march, &facts);
+  if (facts.longest > facts.step) tell_classes(march);
+  dvi_march_destroy(&march);
+}
+
 void elastic_tell_cost(const problem *scene, const char *method, double fraction)
 {
   const double own = measure_cost(scene, method, fraction),
@@ -79,6 +115,7 @@ void elastic_tell_cost(const problem *scene, const char *method, double fraction
   (void)printf("cost: %.4g evaluations of cells in a unit of time, verlet with the same fraction "
                "of its bound %.4g, %.1f times as many\n",
                own, other, other / own);
+  tell_classes_of(scene, method, fraction);
 }
 
 /* ---- views ---- */

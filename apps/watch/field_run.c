@@ -78,9 +78,8 @@ static int refuse_state(dvi_status status, const journey *j)
   const int code = library_error(status);
   if (status == DVI_BAD_FILE && strstr(dvi_last_error(), "step") != NULL && isnan(j->request->h) &&
       dvi_scene_plan_of(j->scene->scene)->fraction > 0)
-    complain(
-        "run: a step by a fraction is fitted to --t-end: give the checkpoint's step by --h, or "
-        "its end");
+    complain("run: a step by a fraction is fitted to the end: resume with the scene and the end of "
+             "the run that wrote it, or give both runs the same --h");
   return code;
 }
 

@@ -84,7 +84,7 @@ expect 2 'a gap' spectrum gap.csv --columns q
 says err 'from t = 0 to 0.1, but from 0.2' 'where the gap is'
 sed '7s/.*/0.5,,,,/' driven.csv >hole.csv
 expect 2 'a hole' spectrum hole.csv --columns q
-says err "row 6 has no number in column 'q'" 'where the hole is'
+says err "line 7 has no number in column 'q'" 'where the hole is'
 printf 'a,b\n1,2\n' >timeless.csv
 expect 2 'no times' spectrum timeless.csv
 says err "no column 't'" 'no times'

@@ -40,7 +40,7 @@ typedef struct dvi_elastic_material {
   const char *part; /**< a part of n-cells. Copied. "all" is one. The last one of a cell counts */
   dvi_elastic_law law;
   double lambda, mu; /**< mu > 0, lambda > -2 mu/n */
-  double mooney;     /**< 0 to mu */
+  double mooney;     /**< 0 to mu, and 0 with other laws */
   double rho;        /**< density of reference, above 0 */
   /** Rayleigh's damping, forces -alpha m u' - beta K u' with the stiffness K at rest. At least 0.
    *  Default: none */
@@ -83,7 +83,8 @@ typedef enum dvi_obstacle_kind {
 
 /** A rigid obstacle, which a node hits at the time when it reaches it. A hit changes the node's
  *  velocity v along the outer normal from -v_n to e v_n, and friction takes at most mu (1 + e) v_n
- *  from its velocity along the surface (Fetecau, Marsden, Ortiz and West 2003). */
+ *  from its velocity along the surface (Fetecau, Marsden, Ortiz and West 2003). A node that a
+ *  condition moves into an obstacle ends the run with DVI_CALLBACK_FAILED. */
 typedef struct dvi_obstacle {
   const char *name; /**< copied. Used in messages */
   dvi_obstacle_kind kind;
@@ -126,7 +127,8 @@ extern "C" {
 /** Create a solid.
  *
  *  @retval DVI_BAD_ARGUMENT     a cell has no material, a constant is out of its range, a part is
- *                               missing, all is held, or an argument is not as described.
+ *                               missing, all is held, all of a load on facets acts on what is held,
+ *                               or an argument is not as described.
  *                               dvi_last_error() names the material, the part or the cell
  *  @retval DVI_UNSUPPORTED      the mesh has no triangles in a plane or tetrahedra in space, or
  *                               repeats itself
@@ -172,7 +174,8 @@ void dvi_elastic_project(const dvi_elastic *elastic, const double *u, const doub
  *  @retval DVI_BAD_ARGUMENT     the mesh has no such part of n-cells
  *  @retval DVI_SINGULAR         a cell is inverted, where its law is not defined.
  *                               dvi_last_error() names it
- *  @retval DVI_CALLBACK_FAILED  a stored energy or a load failed */
+ *  @retval DVI_CALLBACK_FAILED  a stored energy or a load failed
+ *  @retval DVI_NOT_FINITE       displacements, rates or energies are not finite */
 dvi_status dvi_elastic_energy(const dvi_elastic *elastic, double t, const double *u,
                               const double *rate, const char *part, dvi_elastic_energies *energies);
 

@@ -45,7 +45,7 @@ static dvi_status measure_step(dvi_path *path, int k, energy_range *r, dvi_path_
 {
   const dvi__instant before = energy_node(path, k, 0), after = energy_node(path, k + 1, 1);
   double change, kinetic;
-  DVI_TRY(dvi__energy_change(path->energies, &before, &after, &change, &kinetic));
+  DVI_TRY(dvi__energy_change(path->energies, &before, &after, NULL, &change, &kinetic));
   if (k == 0) DVI_TRY(widen_energy_range(path, 0, &before, r));
   DVI_TRY(widen_energy_range(path, k + 1, &after, r));
   const double jump = change > 0 ? change / kinetic : 0;
@@ -68,7 +68,8 @@ dvi_status dvi__path_energies(dvi_path *path, dvi_path_report *report)
   }
   const dvi__instant lowest = energy_node(path, r.lowest, 0),
                      highest = energy_node(path, r.highest, 1);
-  return dvi__energy_change(path->energies, &lowest, &highest, &report->energy_spread, &kinetic);
+  return dvi__energy_change(path->energies, &lowest, &highest, NULL, &report->energy_spread,
+                            &kinetic);
 }
 
 /* Return the spread relative to the largest kinetic energy. A path at rest has the spread 0. */

@@ -58,6 +58,7 @@ struct dvi__attempt {
   double *forces;   /* [2 n] work */
   double *numbers;  /* storage of all these arrays */
   int by_motion;    /* the step is followed because of its motion alone */
+  int by_driving;   /* or because of its energy, which need not be kept where time acts */
 };
 
 void dvi__attempt_extend(dvi_integrator *I)
@@ -107,8 +108,12 @@ static int state_jumps(dvi_integrator *I)
                      after = {I->next.t, I->next.q, free[1] != NULL ? free[1] : I->next.p, I->v};
   dvi__guess_velocity(I->system->n, I->now.q, I->last.q, I->last.p, I->last_h, I->last_v);
   dvi__guess_velocity(I->system->n, I->next.q, I->now.q, I->last_v, I->next.t - I->now.t, I->v);
-  if (dvi__energy_change(I->evaluator, &before, &after, &change, &exchanged) != DVI_OK) return 1;
+  if (dvi__energy_change(I->evaluator, &before, &after, I->stepper.work, &change, &exchanged) !=
+      DVI_OK)
+    return 1;
+  I->first->by_driving = !I->system->autonomous;
   if (!(change <= doubted_change * exchanged)) return 1;
+  I->first->by_driving = 0;
   if (I->stepper.doubt == DVI__LINEAR || is_spared(I)) return 0;
   if (dvi__motion_defect(I->evaluator, &before, &after, I->first->forces, &defect) != DVI_OK)
     return 1;
@@ -119,7 +124,7 @@ static int state_jumps(dvi_integrator *I)
 static int is_doubted(dvi_integrator *I)
 {
   if (I->first == NULL || I->stepper.doubt == DVI__SURE) return 0;
-  I->first->by_motion = 0;
+  I->first->by_motion = I->first->by_driving = 0;
   return I->stepper.doubt == DVI__ASTRAY || state_jumps(I);
 }
 
@@ -129,7 +134,8 @@ static dvi_status attempt_step(dvi_integrator *I, double length, double density)
   memcpy(I->stepper.memory, I->memory_before, I->stepper.memory_count * sizeof(double));
   I->next.density = density;
   I->stepper.doubt = DVI__SURE;
-  I->stepper.bend = 0;
+  I->stepper.bend = I->stepper.worked = 0;
+  I->stepper.work = NULL;
   return dvi__take_step(&I->stepper, &I->next, length);
 }
 
@@ -208,10 +214,12 @@ dvi_status dvi__attempt(dvi_integrator *I, double length, double density)
   if (hasty && status > 0 && I->stepper.doubt == DVI__ASTRAY)
     status = follow_branch(I, length, density, DVI__BRANCH_CAREFUL, &before);
   const int is_lost = status > 0 && I->stepper.doubt != DVI__ASTRAY;
-  if (status != DVI_OK && !(is_lost && I->first->by_motion)) return status;
+  if (status != DVI_OK && !(is_lost && (I->first->by_motion || I->first->by_driving)))
+    return status;
   /* Do not refuse a step because of its motion alone if its equations have a solution. At the front
    * of a travelling wave, where numbers grow by high powers of h, following may lose a branch that
-   * goes on. */
+   * goes on. So may it where a long step passes over fast vibrations. The energy
+   * of a driven system says no more against a step than its motion does. */
   const int right = is_lost || (is_same(n, I->next.q, I->first->state.q, I->now.q) &&
                                 is_same(n, I->next.p, I->first->state.p, I->now.p));
   if (right) restore_first(I);

@@ -123,6 +123,12 @@ typedef struct dvi__stepper {
   /* set by `step`: the momenta [n] between which it conserves the energy, for the test of its
    * branch. NULL (default) for those of the states before and after it */
   const double *free_p[2];
+  /* set by `step` beside a doubt: what forces, and rates of a Lagrangian that depends on time,
+   * supplied to the energy in the step, by the method's own quadrature. NULL (default) for the mean
+   * of the forces' power before and after it */
+  const double *work;
+  int asks_work; /* an outer stepper wants `work` of all steps */
+  double worked; /* the sum of that of inner steps, NaN if one is not known */
   /* curvature of the equations, the worst of dvi__solve_report; set and reset as `doubt` */
   double bend;
   void *own; /* the method's struct */

@@ -212,10 +212,14 @@ dvi_status dvi__inner_step(dvi__stepper *self, dvi__stepper *inner, dvi__state *
 {
   inner->follow = self->follow;
   inner->doubt = DVI__SURE;
-  inner->bend = 0;
+  inner->bend = inner->worked = 0;
+  inner->work = NULL;
+  inner->asks_work = 1;
   const dvi_status status = dvi__take_step(inner, state, h);
   if (inner->doubt > self->doubt) self->doubt = inner->doubt;
   self->bend = fmax(self->bend, inner->bend);
+  self->worked += inner->work != NULL ? *inner->work : (double)NAN;
+  self->work = isnan(self->worked) ? NULL : &self->worked;
   return status;
 }
 

@@ -38,6 +38,10 @@ says out '^cost: .* evaluations of cells' 'cells against those of equal steps'
 sed 's/grading: 2/grading: 3.5/' block.yaml >graded.yaml
 expect 0 'stable steps' stability graded.yaml
 says out '^  avi  *3 classes of steps, .* 1\.000000000 .*  stable$' 'no growth'
+expect 0 'steps by class' explain graded.yaml
+says out '^ *step  *cells  evaluations in a unit of time$' 'classes'
+says out '^ *0.0175439  *24  1368$' 'the shortest steps'
+says out '^ *0.0701754  *24  342$' 'the longest ones'
 expect 0 'a resonance' stability graded.yaml --fraction 0.9 --method avi --method avi:classes=no
 says out '^  avi  *3 classes of steps, .* 1\.036976866 .*  grows$' 'growth in classes'
 says out '^  avi:classes=no .* without a common period .*  grows$' 'growth of free steps'
@@ -120,6 +124,86 @@ says out '^0,3,4$' 'their weights'
 sed 's/all: {law: svk, lambda: 1, mu: 1}, //' two.yaml >part.yaml
 expect 2 'a cell without a material' run part.yaml
 says err '^dvi: part.yaml:3:12: .*triangle .* has no material' 'the cell'
+
+# Two tetrahedra with a common edge have the motions of one body, and turn about the edge.
+cat >edge.msh <<END
+\$MeshFormat
+2.2 0 8
+\$EndMeshFormat
+\$Nodes
+6
+1 0 0 0
+2 0 0 1
+3 1 0 0
+4 0 1 0
+5 -1 0 0
+6 0 -1 0
+\$EndNodes
+\$Elements
+2
+1 4 2 1 1 1 2 3 4
+2 4 2 1 1 1 2 5 6
+\$EndElements
+END
+cat >edge.yaml <<END
+mesh: {file: edge.msh}
+field: elastic
+materials: {all: {law: svk, young: 10, poisson: 0.3}}
+method: avi
+step: {fraction: 0.5}
+until: 1
+END
+expect 0 'modes of a hinge' modes edge.yaml --count 4
+says out '^left out: 6 of frequency zero$' 'motions of one body'
+says out '^ *1  *-\{0,1\}[0-9.]*e-1[0-9]  *[0-9]' 'a turn about the edge'
+says out '^ *2  *15.3846' 'the lowest vibration'
+
+# What is given agrees with the rest of a scene.
+cat >press.yaml <<END
+mesh: {generator: kuhn, cells: [2, 2]}
+field: elastic
+materials: {all: {law: svk, young: 10, poisson: 0.3}}
+boundary: {bottom: {fixed: {y: -t}}}
+obstacles: {floor: {plane: {point: [0, -0.1], normal: [0, 1]}, restitution: 0}}
+method: avi
+step: 0.01
+until: 0.3
+END
+expect 1 'a node that is driven into a floor' run press.yaml
+says err 'avi: at t = 0.1[0-9]*: .* moves vertex 0 into the obstacle "floor": let it stop' 'where'
+expect 1 'the same by a mechanical method' run press.yaml --method moreau-jean
+says err 'moreau-jean: step 1[01] .* moves vertex 0 into the obstacle "floor"' 'where'
+sed 's/-t}}}/"-min(t, 0.1)"}}}/' press.yaml >stop.yaml
+expect 0 'a node that stops on a floor' run stop.yaml
+sed 's/y: -t/x: 0/; s/^method:/initial: {u: "[0.1*y, 0]", u'"'"': [1, 0]}\n&/' \
+  press.yaml >shear.yaml
+expect 0 'a start that agrees with its boundary' check shear.yaml
+sed 's/0.1\*y/0.1 + y/' shear.yaml >torn.yaml
+expect 2 'a start that tears nodes apart' check torn.yaml
+says err '^dvi: torn.yaml:6:15: the start moves node 0 by 0.1 along x, .* gives 0;' 'the node'
+sed 's/^boundary:.*/boundary: {bottom: fixed}\nloads: {bottom: {traction: [1, 0]}}/' \
+  press.yaml >idle.yaml
+expect 2 'a load on what is held' check idle.yaml
+says err '^dvi: idle.yaml:5:8: .*part "bottom" does nothing, .* all displacements' 'the load'
+
+# Slips have their remedies.
+slip() { # NAME SED-COMMAND WORDS: what a slip in drop.yaml is told
+  sed "$2" drop.yaml >slip.yaml
+  expect 2 "$1" check slip.yaml
+  says err "$3" "$1"
+}
+slip 'gravity' 's/gravity/gravitty/' "slip.yaml:6:9: a load is 'gravity', .*mean gravity?"
+slip 'a force on a side' 's/{gravity.*/{left: {force: [0, 0, 1]}}/' "'left' has no volume"
+slip 'a law' 's/svk/neohookean/' 'a law is linear, svk, .*; did you mean neo-hookean?'
+slip 'a probe' 's/^method/probes: {c: {of: stres, at: [0, 0, 0.1]}}\n&/' 'did you mean stress?'
+slip 'gravity in a plane' 's/-9.81/0, -9.81/' 'gravity has 3 coordinates here, not 4'
+
+# The scenes that are shipped. The bar has its own frequency of 1.4.
+scenes=$(dirname "$0")/../../../apps/scenes/solids
+expect 0 'a block that bounces' run "$scenes/bouncing-block.yaml" --final
+says out '^1,0\.2[0-9.]*,.*,1[0-9][0-9],0\.96' 'hits, and how far it slides'
+expect 0 'a bar that is shaken' run "$scenes/shaken-bar.yaml" --final
+says out '^10,.*,-\{0,1\}0.0' 'its end'
 
 # What there is not is refused.
 expect 2 'another march' run block.yaml --method leapfrog

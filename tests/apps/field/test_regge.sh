@@ -65,10 +65,10 @@ expect 1 'no triangle' regge simplex-4 --lengths long.csv
 says err 'triangle 0 (vertices 0 1 2) does not exist with the lengths 9 (0 1)' 'the triangle'
 printf 'from,to,length\n0,9,1\n' >none.csv
 expect 2 'no edge' regge simplex-4 --lengths none.csv
-says err 'row 1: no edge joins the vertices 0 and 9' 'the edge'
+says err 'line 2: no edge joins the vertices 0 and 9' 'the edge'
 printf 'from,to,length\n0,4,1\n4,0,1.1\n' >twice.csv
 expect 2 'one edge twice' regge simplex-4 --lengths twice.csv
-says err 'rows 1 and 2 are of one edge' 'both rows'
+says err 'lines 2 and 3 are of one edge' 'both lines'
 expect 2 'no mesh' regge cell-700
 says err "did you mean 'cell-600'" 'the nearest name'
 expect 2 'a surface' regge icosphere

@@ -1,6 +1,7 @@
 #!/bin/sh
 # Each scene of apps/scenes has right derivatives, and moves as the problem of the catalogue with
-# its name. The catalogue has no controls; test_control.sh solves those of apps/scenes/control.
+# its name. The catalogue has no controls and no solids: those of apps/scenes/control are solved by
+# test_control.sh, and those of apps/scenes/solids run by field/test_elastic.sh.
 # Usage: test_scenes.sh DVI
 set -u
 dvi=$1
@@ -17,7 +18,7 @@ for scene in "$here"/../../../apps/scenes/*.yaml "$here"/../../../apps/scenes/*/
   count=$((count + 1))
   [ $((count % ${stride:-1})) -eq 0 ] || continue
   name=$(basename "$scene" .yaml)
-  [ "$(basename "$(dirname "$scene")")" != control ] || continue
+  case $(basename "$(dirname "$scene")") in control | solids) continue ;; esac
   method=$(value_of method "$scene") h=$(value_of step "$scene")
   "$dvi" check "$scene" >/dev/null || fail "dvi check $name: exit code $?"
   end=$(awk "BEGIN { print 3 * $h }")

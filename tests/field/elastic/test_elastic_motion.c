@@ -149,6 +149,97 @@ START_TEST(rayleighs_damping_of_a_mode_is_that_of_an_oscillator)
 }
 END_TEST
 
+/* ---- steps that pass over fast vibrations ---- */
+
+static int sway(double t, const double *X, double *u, double *rate, void *user)
+{
+  (void)X, (void)user;
+  u[0] = rate[0] = 0;
+  u[1] = 0.02 * sin(7 * t), rate[1] = 0.14 * cos(7 * t);
+  return 0;
+}
+
+static int weigh_down(double t, const double *X, const double *normal, double *force, void *user)
+{
+  (void)t, (void)X, (void)normal, (void)user;
+  force[0] = 0, force[1] = -0.1;
+  return 0;
+}
+
+/* A bar that is held at its left end, which may sway, and has a damping. */
+static dvi_elastic *damped_bar(dvi_elastic_law law, double alpha, int sways)
+{
+  const dvi_generator_options options = {.cells = {20, 2}, .extent = {1, 0.1}};
+  const dvi_elastic_condition left = {
+      .part = "left", .displacement = sways ? sway : NULL, .is_steady = !sways};
+  const dvi_elastic_load weight = {.part = "all", .force = weigh_down, .is_steady = 1};
+  const dvi_elastic_material material = {.part = "all",
+                                         .law = law,
+                                         .lambda = 1000 * 0.3 / (1.3 * 0.4),
+                                         .mu = 1000 / 2.6,
+                                         .rho = 1,
+                                         .alpha = alpha};
+  return solid_on(
+      generated("kuhn", options), material,
+      (dvi_elastic_terms){.condition = &left, .conditions = 1, .load = &weight, .loads = 1});
+}
+
+/* The energy of a driven bar is balanced by the work of its condition. Its steps are doubted for
+ * their motion alone, and soon no more. */
+START_TEST(driven_steps_are_seldom_followed)
+{
+  dvi_counters counters;
+  dvi_elastic *solid = damped_bar(DVI_ELASTIC_SVK, 1, 1);
+  dvi_system *system = system_of_solid(solid);
+  dvi_integrator *integrator = start_solid(solid, system, "midpoint", NULL);
+  advance(integrator, 0.005, 100);
+  dvi_integrator_counters(integrator, &counters);
+  ck_assert_int_lt(counters.followed, 15);
+  dvi_integrator_destroy(&integrator);
+  dvi_system_destroy(&system);
+  dvi_elastic_destroy(&solid);
+}
+END_TEST
+
+/* Compositions know the work of the damping in their inner steps. */
+START_TEST(no_damping_makes_a_composition_too_large)
+{
+  for (int law = DVI_ELASTIC_SVK; law <= DVI_ELASTIC_NEO_HOOKEAN; law++) {
+    dvi_elastic *solid = damped_bar((dvi_elastic_law)law, 40, 0);
+    dvi_system *system = system_of_solid(solid);
+    dvi_integrator *integrator = start_solid(solid, system, "composition:order=4,base=midpoint",
+                                             NULL);
+    advance(integrator, 0.02, 2);
+    dvi_integrator_destroy(&integrator);
+    dvi_system_destroy(&system);
+    dvi_elastic_destroy(&solid);
+  }
+}
+END_TEST
+
+/* A step has one solution. It is 20 and more times as long as the fastest vibrations, and damping
+ * and the moving end change the energy by much of its kinetic part. Steps of linear laws are not
+ * even doubted. */
+START_TEST(no_damping_and_no_driving_makes_a_step_too_large)
+{
+  static const char *const methods[] = {"midpoint", "galerkin:degree=2"};
+  static const double step[] = {0.05, 0.02, 0.005};
+  for (int law = DVI_ELASTIC_LINEAR; law <= DVI_ELASTIC_NEO_HOOKEAN; law++)
+    for (int k = 0; k < 12; k++) {
+      dvi_counters counters;
+      dvi_elastic *solid = damped_bar((dvi_elastic_law)law, k % 2 ? 6 : 1, _i);
+      dvi_system *system = system_of_solid(solid);
+      dvi_integrator *integrator = start_solid(solid, system, methods[k / 2 % 2], NULL);
+      advance(integrator, step[k / 4], 2);
+      dvi_integrator_counters(integrator, &counters);
+      if (law == DVI_ELASTIC_LINEAR) ck_assert_int_eq(counters.followed, 0);
+      dvi_integrator_destroy(&integrator);
+      dvi_system_destroy(&system);
+      dvi_elastic_destroy(&solid);
+    }
+}
+END_TEST
+
 /* ---- a block that falls ---- */
 
 static int gravity(double t, const double *X, const double *normal, double *force, void *user)
@@ -233,6 +324,9 @@ SUITE(elastic_motion)
   tcase_add_test(tests, explicit_and_split_methods_have_order_2);
   tcase_add_loop_test(tests, momenta_stay_and_the_energy_swings, 0, DVI_ELASTIC_ENERGY);
   tcase_add_test(tests, rayleighs_damping_of_a_mode_is_that_of_an_oscillator);
+  tcase_add_loop_test(tests, no_damping_and_no_driving_makes_a_step_too_large, 0, 2);
+  tcase_add_test(tests, driven_steps_are_seldom_followed);
+  tcase_add_test(tests, no_damping_makes_a_composition_too_large);
   tcase_add_test(tests, a_block_that_falls_rebounds);
   tcase_add_test(tests, a_block_with_friction_rebounds_with_a_part_of_its_energy);
 }

@@ -274,6 +274,22 @@ START_TEST(inverted_cells_are_named)
 }
 END_TEST
 
+START_TEST(numbers_that_are_not_finite_are_not_inverted_cells)
+{
+  dvi_elastic *solid = block(3, 1, 1, (dvi_elastic_law)_i);
+  dvi_elastic_energies energies = {.stored = 7};
+  double u[24] = {0, 0, NAN}, stress[54];
+  ck_assert_int_eq(dvi_elastic_stress(solid, 0, NULL, u, stress), DVI_NOT_FINITE);
+  ck_assert_int_eq(dvi_elastic_energy(solid, 0, u, NULL, NULL, &energies), DVI_NOT_FINITE);
+  u[2] = 0;
+  ck_assert_int_eq(dvi_elastic_energy(solid, 0, u, (double[24]){1e200}, NULL, &energies),
+                   DVI_NOT_FINITE);
+  check_words("energies of tetrahedron 0 (vertices 0 1 3 7) are not finite");
+  ck_assert_double_eq(energies.stored, 7);
+  dvi_elastic_destroy(&solid);
+}
+END_TEST
+
 /* The terms of a wrong solid, all of which the mistakes may change. */
 typedef struct wrong {
   dvi_elastic_terms terms;
@@ -374,6 +390,10 @@ static void high_mooney(wrong *w)
   w->material[0].law = DVI_ELASTIC_MOONEY_RIVLIN;
   w->material[0].mooney = 1.5;
 }
+static void idle_mooney(wrong *w)
+{
+  w->material[0].mooney = 0.2;
+}
 static void no_rho(wrong *w)
 {
   w->material[0].rho = NAN;
@@ -465,6 +485,7 @@ static const struct mistake {
     {no_mu, DVI_BAD_ARGUMENT, "mu of the material on part \"all\" is 0; a finite number above 0"},
     {low_lambda, DVI_BAD_ARGUMENT, "lambda of the material on part \"all\" is -0.7"},
     {high_mooney, DVI_BAD_ARGUMENT, "mooney of the material on part \"all\" is 1.5"},
+    {idle_mooney, DVI_BAD_ARGUMENT, "is 0.2; a finite number of 0 with its law is needed"},
     {no_rho, DVI_BAD_ARGUMENT, "rho of the material on part \"all\" is nan"},
     {negative_alpha, DVI_BAD_ARGUMENT, "alpha of the material on part \"all\" is -1"},
     {no_energy, DVI_BAD_ARGUMENT, "the stored energy of the material on part \"all\" is missing"},
@@ -568,6 +589,8 @@ SUITE(elastic_solids)
   tcase_add_test(tests, rigid_motions_are_left_out_of_the_modes);
   tcase_add_test(tests, no_frequency_exceeds_those_of_the_cells);
   tcase_add_loop_test(tests, inverted_cells_are_named, DVI_ELASTIC_SVK, DVI_ELASTIC_ENERGY);
+  tcase_add_loop_test(tests, numbers_that_are_not_finite_are_not_inverted_cells, 0,
+                      DVI_ELASTIC_ENERGY);
   tcase_add_test(tests, bad_terms_have_their_sentences);
   tcase_add_test(tests, other_meshes_are_refused);
   tcase_add_test(tests, a_plane_has_no_third_component);

@@ -277,7 +277,7 @@ START_TEST(conditions_and_loads_fit_the_solid)
   section_refused("boundary: {left: {fixed: {w: 0}}}", 27, "has no 'w'; it has x, y and z");
   section_refused("boundary: {left: {free: 0}}", 19, "a condition");
   section_refused("loads: {all: {traction: [1, 0, 0]}}", 9, "of facets for a traction");
-  section_refused("loads: {left: {force: [1, 0, 0]}}", 9, "no part 'left' of cells");
+  section_refused("loads: {left: {force: [1, 0, 0]}}", 9, "'left' has no volume for a force");
   section_refused("loads: {left: {traction: [1, 0]}}", 26, "a traction is a vector of 2 here");
   section_refused("loads: {all: {force: normal}}", 22, "a force has no normal; a traction has one");
   section_refused("loads: {gravity: [0, -1]}", 18, "gravity has 3 coordinates here");

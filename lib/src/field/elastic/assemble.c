@@ -206,15 +206,21 @@ int dvi__solid_driven_rates(const dvi_elastic *e, int64_t cell, double t, double
   return found;
 }
 
-dvi_status dvi__solid_rest_stiffness(const dvi_elastic *e, dvi__csr *K)
+dvi_status dvi__solid_rest_pattern(const dvi_elastic *e, dvi__solid_pattern *pattern)
 {
-  dvi__solid_pattern pattern;
-  DVI_TRY(dvi__solid_pattern_create(e, &pattern));
+  DVI_TRY(dvi__solid_pattern_create(e, pattern));
   for (int64_t c = 0; c < e->cells; c++) {
     double own[DVI__SOLID_NUMBERS * DVI__SOLID_NUMBERS];
     (void)dvi__solid_stiffness(e, c, NULL, own);
-    dvi__solid_add_matrix(e, &pattern, c, own, pattern.matrix.value);
+    dvi__solid_add_matrix(e, pattern, c, own, pattern->matrix.value);
   }
+  return DVI_OK;
+}
+
+dvi_status dvi__solid_rest_stiffness(const dvi_elastic *e, dvi__csr *K)
+{
+  dvi__solid_pattern pattern;
+  DVI_TRY(dvi__solid_rest_pattern(e, &pattern));
   *K = pattern.matrix;
   pattern.matrix = (dvi__csr){0};
   dvi__solid_pattern_clear(&pattern);

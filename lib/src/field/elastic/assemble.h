@@ -14,6 +14,9 @@ typedef struct dvi__solid_pattern {
 dvi_status dvi__solid_pattern_create(const dvi_elastic *e, dvi__solid_pattern *pattern);
 void dvi__solid_pattern_clear(dvi__solid_pattern *pattern);
 
+/* Find the pattern, with the stiffness at rest in its matrix. */
+dvi_status dvi__solid_rest_pattern(const dvi_elastic *e, dvi__solid_pattern *pattern);
+
 /* Add a matrix of a cell [((n+1)*n)^2] to values in the order of the pattern. */
 void dvi__solid_add_matrix(const dvi_elastic *e, const dvi__solid_pattern *pattern, int64_t cell,
                            const double *K, double *value);

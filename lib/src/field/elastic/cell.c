@@ -215,23 +215,36 @@ int dvi__solid_add_load(const dvi_elastic *e, int64_t cell, double t, double *f)
 
 /* ---- sentences ---- */
 
+/* Of laws that are not given. */
 static const char *name_of_law(dvi_elastic_law law)
 {
   static const char *const name[] = {"linear law", "law of St. Venant and Kirchhoff",
-                                     "neo-Hookean law", "law of Mooney and Rivlin",
-                                     "stored energy"};
+                                     "neo-Hookean law", "law of Mooney and Rivlin"};
   return name[law];
 }
 
 dvi_status dvi__solid_refuse(const dvi_elastic *e, int64_t cell, int returned)
 {
   const dvi__cell_name name = dvi__name_cell(e->mesh, e->n, cell);
-  const char *law = name_of_law(e->materials[e->material[cell]].law);
+  const dvi_elastic_law law = e->materials[e->material[cell]].law;
+  const int is_given = law == DVI_ELASTIC_ENERGY, is_loaded = e->load_start != NULL;
   if (returned < 0)
-    return dvi__fail(DVI_CALLBACK_FAILED, "elastic: the %s returned %d in %s", law, returned,
+    return dvi__fail(DVI_CALLBACK_FAILED, "elastic: %s returned %d at %s%s",
+                     !is_given   ? "a load"
+                     : is_loaded ? "the stored energy or a load"
+                                 : "the stored energy",
+                     returned, name.text,
+                     !is_given   ? ", or is not finite there"
+                     : is_loaded ? ", or a load is not finite there"
+                                 : "");
+  if (is_given)
+    return dvi__fail(DVI_SINGULAR,
+                     "elastic: the stored energy of %s, or a derivative of it, is not defined or "
+                     "not finite where it is deformed to: take smaller steps, smaller loads or "
+                     "larger cells there",
                      name.text);
   return dvi__fail(DVI_SINGULAR,
                    "elastic: %s is inverted, or deformed to where the %s of its material is not "
                    "defined: take smaller steps, smaller loads or larger cells there",
-                   name.text, law);
+                   name.text, name_of_law(law));
 }

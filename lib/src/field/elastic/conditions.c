@@ -3,7 +3,8 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "field/elastic/cell.h"
+#include "field/elastic/assemble.h"
+#include "field/elastic/contacts.h"
 #include "field/elastic/create.h"
 
 /* ---- values ---- */
@@ -22,6 +23,31 @@ static int evaluate(const dvi_elastic *e, const dvi_elastic_condition *condition
   return returned;
 }
 
+/* Give the depth of a node in an obstacle, beyond roundings, if what is given alone tells it. */
+static double depth_of_given(const dvi_elastic *e, int64_t vertex, const double *u,
+                             const dvi_obstacle *o)
+{
+  double x[DVI_ELASTIC_DIMENSION_MAX], normal[DVI_ELASTIC_DIMENSION_MAX], size = o->radius;
+  for (int i = 0; i < e->n; i++) {
+    const int is_given = e->condition[vertex * e->n + i] >= 0;
+    if (!is_given && (o->kind != DVI_OBSTACLE_PLANE || o->normal[i] != 0)) return 0;
+    x[i] = e->point[vertex * e->n + i] + (is_given ? u[i] : 0);
+    size += fabs(x[i]) + fabs(o->point[i]);
+  }
+  return -dvi__solid_gap(o, e->n, x, normal) - 1e-12 * size;
+}
+
+/* Obstacles cannot hold a node that a condition moves. */
+static int check_obstacles(const dvi_elastic *e, int64_t vertex, const double *u)
+{
+  for (int k = 0; k < e->obstacles && e->is_outer[vertex]; k++)
+    if (dvi__solid_node_is_driven(e, vertex) && depth_of_given(e, vertex, u, e->obstacle + k) > 0)
+      return dvi__return_because(DVI__GIVEN_INSIDE,
+                                 "a displacement that is given moves %s into the obstacle \"%s\"",
+                                 dvi__name_cell(e->mesh, 0, vertex).text, e->obstacle[k].name);
+  return 0;
+}
+
 int dvi__solid_given(const dvi_elastic *e, int64_t vertex, double t, double *u, double *rate)
 {
   const int n = e->n, *of = e->condition + vertex * n;
@@ -38,12 +64,20 @@ int dvi__solid_given(const dvi_elastic *e, int64_t vertex, double t, double *u, 
       if (rate != NULL) rate[j] = own_rate[j];
     }
   }
-  return 0;
+  return check_obstacles(e, vertex, u);
 }
 
 dvi_status dvi__solid_refuse_given(const dvi_elastic *e, int64_t vertex, int returned)
 {
   const dvi__cell_name name = dvi__name_cell(e->mesh, 0, vertex);
+  char reason[DVI__SENTENCE_SIZE];
+  if (returned == DVI__GIVEN_INSIDE) {
+    dvi__take_reason(reason);
+    return dvi__fail(DVI_CALLBACK_FAILED,
+                     "elastic: %s: let it stop there, or leave the component along the obstacle's "
+                     "normal free",
+                     reason);
+  }
   if (returned == -1)
     return dvi__fail(DVI_NOT_FINITE,
                      "elastic: a displacement that is given at %s, or its rate, is not finite, or "

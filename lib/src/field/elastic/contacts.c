@@ -147,27 +147,29 @@ static void set_contact(dvi__solid_system *s, int64_t vertex, const dvi_obstacle
                                                  .user = of};
 }
 
-/* Nodes whose displacements are all given do not hit. */
-static int can_hit(const dvi_elastic *e, int64_t vertex)
+/* Nodes do not hit where the displacements on which a gap depends are all given. */
+static int can_hit(const dvi_elastic *e, int64_t vertex, const dvi_obstacle *o)
 {
-  int unknowns = 0;
-  for (int i = 0; i < e->n; i++) unknowns += e->unknown[vertex * e->n + i] >= 0;
-  return e->is_outer[vertex] && unknowns > 0;
+  int can = 0;
+  for (int i = 0; i < e->n; i++)
+    can |= e->unknown[vertex * e->n + i] >= 0 &&
+           (o->kind != DVI_OBSTACLE_PLANE || o->normal[i] != 0);
+  return e->is_outer[vertex] && can;
 }
 
 dvi_status dvi__solid_make_contacts(dvi__solid_system *s)
 {
   const dvi_elastic *e = s->elastic;
-  int64_t nodes = 0;
+  int64_t contacts = 0;
   if (e->obstacles == 0) return DVI_OK;
-  for (int64_t v = 0; v < e->vertices; v++) nodes += can_hit(e, v);
-  const int64_t contacts = nodes * e->obstacles;
+  for (int o = 0; o < e->obstacles; o++)
+    for (int64_t v = 0; v < e->vertices; v++) contacts += can_hit(e, v, e->obstacle + o);
   s->contact = DVI_NEW(dvi__solid_contact, contacts);
   s->contact_term = DVI_NEW(dvi_contact, contacts);
   if (s->contact == NULL || s->contact_term == NULL)
     return dvi__fail(DVI_NO_MEMORY, "elastic: no memory for %lld contacts", (long long)contacts);
   for (int o = 0; o < e->obstacles; o++)
     for (int64_t v = 0; v < e->vertices; v++)
-      if (can_hit(e, v)) set_contact(s, v, e->obstacle + o);
+      if (can_hit(e, v, e->obstacle + o)) set_contact(s, v, e->obstacle + o);
   return DVI_OK;
 }

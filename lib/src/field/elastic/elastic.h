@@ -86,8 +86,9 @@ int dvi__solid_stiffness(const dvi_elastic *e, int64_t cell, const double *u, do
 int dvi__solid_add_load(const dvi_elastic *e, int64_t cell, double t, double *f);
 
 /* Set the components of u and rate [n] of a vertex that are given to what the conditions say at a
- * time. Others stay. rate may be NULL. Returns as callbacks do, or -1 for numbers that are not
- * finite. */
+ * time. Others stay. rate may be NULL. Returns as callbacks do, -1 for numbers that are not finite,
+ * or DVI__GIVEN_INSIDE, with a reason, where that is inside of an obstacle. */
+enum { DVI__GIVEN_INSIDE = -1000000 };
 int dvi__solid_given(const dvi_elastic *e, int64_t vertex, double t, double *u, double *rate);
 
 /* Give the largest eigenvalue of a cell's stiffness at rest against its own lumped mass

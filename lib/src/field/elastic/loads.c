@@ -36,12 +36,23 @@ static const int *cells_of(const dvi_elastic *e, const dvi_elastic_load *load, i
   return *is_facet ? dvi_mesh_part_cells(e->mesh, load->part, e->n - 1, count) : cell;
 }
 
+/* Return whether a displacement of the nodes of a facet is unknown. */
+static int is_movable(const dvi_elastic *e, int facet)
+{
+  const int n = e->n, *vertex = e->mesh->corner[n - 1] + (int64_t)facet * n;
+  for (int k = 0; k < n * n; k++)
+    if (e->unknown[(int64_t)vertex[k / n] * n + k % n] >= 0) return 1;
+  return 0;
+}
+
+/* A traction acts on facets of the boundary, and moves something. */
 static dvi_status check_facets(const dvi_elastic *e, const dvi_elastic_load *load)
 {
-  int is_facet;
+  int is_facet, moves = 0;
   int64_t count;
   const int *facet = cells_of(e, load, &is_facet, &count);
   for (int64_t i = 0; i < count && is_facet; i++) {
+    moves |= is_movable(e, facet[i]);
     if (e->mesh->coface[2 * (int64_t)facet[i] + 1] < 0) continue;
     const dvi__cell_name name = dvi__name_cell(e->mesh, e->n - 1, facet[i]);
     return dvi__fail(DVI_BAD_ARGUMENT,
@@ -49,7 +60,11 @@ static dvi_status check_facets(const dvi_elastic *e, const dvi_elastic_load *loa
                      "name a part of the boundary",
                      load->part, name.text);
   }
-  return DVI_OK;
+  if (moves || !is_facet) return DVI_OK;
+  return dvi__fail(DVI_BAD_ARGUMENT,
+                   "elastic: the load on part \"%s\" does nothing, because all displacements there "
+                   "are given: leave it out, or hold a component less",
+                   load->part);
 }
 
 static void set_load(const dvi_elastic *e, int load, int is_facet, int number, dvi__solid_load *of)

@@ -61,6 +61,8 @@ static dvi_status check_constants(int n, const dvi_elastic_material *m)
   DVI_TRY(check_range(m->part, "rho", m->rho, m->rho > 0, "above 0"));
   DVI_TRY(check_range(m->part, "alpha", m->alpha, m->alpha >= 0, "of at least 0"));
   DVI_TRY(check_range(m->part, "beta", m->beta, m->beta >= 0, "of at least 0"));
+  if (m->law != DVI_ELASTIC_MOONEY_RIVLIN)
+    DVI_TRY(check_range(m->part, "mooney", m->mooney, m->mooney == 0, "of 0 with its law"));
   if (m->law == DVI_ELASTIC_ENERGY) return DVI_OK;
   DVI_TRY(check_range(m->part, "mu", m->mu, m->mu > 0, "above 0"));
   (void)snprintf(range, sizeof range, "above -2 mu/%d = %g", n, least);
@@ -136,7 +138,7 @@ static dvi_status take_material(int n, const dvi_elastic_material *given, dvi__s
   *m = (dvi__solid_material){.law = given->law,
                              .lambda = given->lambda,
                              .mu = given->mu,
-                             .mooney = given->law == DVI_ELASTIC_MOONEY_RIVLIN ? given->mooney : 0,
+                             .mooney = given->mooney,
                              .rho = given->rho,
                              .alpha = given->alpha,
                              .beta = given->beta,

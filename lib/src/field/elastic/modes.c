@@ -7,6 +7,7 @@
 #include "core/status.h"
 #include "field/algebra/largest.h"
 #include "field/elastic/rigid.h"
+#include "field/elastic/system.h"
 
 enum { DEFAULT_COUNT = 6 };
 
@@ -28,15 +29,15 @@ static dvi_matrix view_diagonal(int64_t rows, const double *value)
 
 /* ---- the fastest one ---- */
 
-static dvi_status find_fastest(const dvi_elastic *e, const dvi__csr *K, const double *mass,
-                               double *omega)
+dvi_status dvi__solid_find_fastest(const dvi_elastic *e, const dvi__csr *K, const double *mass)
 {
   double bound = 0;
   const dvi_matrix stiffness = dvi__csr_view(K, 1), diagonal = view_diagonal(e->unknowns, mass);
   const dvi__pencil pencil = {.K = &stiffness, .M = &diagonal, .dimension = e->n};
-  const dvi_status status = dvi__largest_eigenvalue(&pencil, &bound);
-  *omega = sqrt(fmax(bound, 0));
-  return status;
+  if (e->fastest > 0) return DVI_OK;
+  DVI_TRY(dvi__largest_eigenvalue(&pencil, &bound));
+  ((dvi_elastic *)e)->fastest = sqrt(fmax(bound, 0)); /* the same in every thread */
+  return DVI_OK;
 }
 
 dvi_status dvi_elastic_fastest(const dvi_elastic *elastic, double *omega)
@@ -45,14 +46,15 @@ dvi_status dvi_elastic_fastest(const dvi_elastic *elastic, double *omega)
     return dvi__fail(DVI_BAD_ARGUMENT, "elastic: a solid and a place for a frequency are needed");
   dvi__csr K = {0};
   double *mass = NULL;
+  dvi_status status = DVI_OK;
+  if (!(elastic->fastest > 0)) {
+    status = dvi__solid_rest_stiffness(elastic, &K);
+    if (status == DVI_OK) status = make_mass(elastic, &mass);
+    if (status == DVI_OK) status = dvi__solid_find_fastest(elastic, &K, mass);
+  }
   *omega = elastic->fastest;
-  if (*omega > 0) return DVI_OK;
-  DVI_TRY(dvi__solid_rest_stiffness(elastic, &K));
-  dvi_status status = make_mass(elastic, &mass);
-  if (status == DVI_OK) status = find_fastest(elastic, &K, mass, omega);
   dvi__csr_clear(&K);
   dvi__release(mass);
-  if (status == DVI_OK) ((dvi_elastic *)elastic)->fastest = *omega; /* the same in every thread */
   return status;
 }
 
@@ -89,14 +91,37 @@ static double shift_below_zero(const modes *m)
   return -0.1 * k / mass * pow((double)e->vertices, -2.0 / e->n);
 }
 
-/* Move the modes that are not rigid motions to the front. Returns their number. */
+static double product(const modes *m, const double *x, const double *y)
+{
+  double sum = 0;
+  for (int64_t i = 0; i < m->elastic->unknowns; i++) sum += x[i] * m->mass[i] * y[i];
+  return sum;
+}
+
+/* Take rigid motions, and the modes that were kept, out of a mode. Returns 0 if nothing is left. */
+static int purify(const modes *m, int kept, double *x)
+{
+  const int64_t n = m->elastic->unknowns;
+  dvi__rigid_remove(&m->rigid, x);
+  for (int k = 0; k < kept; k++) {
+    const double *other = m->vector + k * n, part = product(m, x, other);
+    for (int64_t i = 0; i < n; i++) x[i] -= part * other[i];
+  }
+  const double square = product(m, x, x);
+  if (square < 1e-3) return 0;
+  for (int64_t i = 0; i < n; i++) x[i] /= sqrt(square);
+  return 1;
+}
+
+/* Move the modes that are not rigid motions to the front. Where parts of a body turn about each
+ * other, their turns, of frequency 0, come mixed with these. Returns their number. */
 static int drop_rigid(modes *m)
 {
   const size_t n = (size_t)m->elastic->unknowns;
   int kept = 0;
   for (int i = 0; i < m->asked; i++) {
-    const double *x = m->vector + (size_t)i * n;
-    if (dvi__rigid_share(&m->rigid, x) > 0.5) continue;
+    double *x = m->vector + (size_t)i * n;
+    if (dvi__rigid_share(&m->rigid, x) > 1e-6 && !purify(m, kept, x)) continue;
     m->value[kept] = m->value[i];
     if (kept != i) memcpy(m->vector + (size_t)kept * n, x, n * sizeof *x);
     kept++;

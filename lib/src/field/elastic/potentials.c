@@ -58,9 +58,10 @@ static int share_stiffness(const dvi_elastic *e, dvi__solid_share share, int64_t
 
 /* ---- sums over cells ---- */
 
-/* A reason for the number that a callback returns at a cell. */
+/* A reason for the number that a callback returns at a cell, unless there is one. */
 static int because(const dvi_elastic *e, int64_t cell, int returned)
 {
+  if (returned == DVI__GIVEN_INSIDE) return returned;
   const dvi__cell_name name = dvi__name_cell(e->mesh, e->n, cell);
   if (returned < 0) return dvi__return_because(returned, "at %s", name.text);
   return dvi__return_because(

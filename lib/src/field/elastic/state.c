@@ -50,6 +50,13 @@ static dvi_status refuse_load(const dvi_elastic *e, int64_t cell, int returned)
   return dvi__fail(DVI_CALLBACK_FAILED, "elastic: a load returned %d at %s", returned, name.text);
 }
 
+static dvi_status refuse_numbers(const dvi_elastic *e, int64_t cell, const char *numbers)
+{
+  const dvi__cell_name name = dvi__name_cell(e->mesh, e->n, cell);
+  return dvi__fail(DVI_NOT_FINITE, "elastic: displacements, rates or %s of %s are not finite",
+                   numbers, name.text);
+}
+
 static dvi_status add_energies(const dvi_elastic *e, int64_t cell, double t, const double *u,
                                const double *rate, dvi_elastic_energies *sum)
 {
@@ -59,6 +66,8 @@ static dvi_status add_energies(const dvi_elastic *e, int64_t cell, double t, con
                                   stored;
   dvi__solid_gather(e, cell, u, own);
   if (rate != NULL) dvi__solid_gather(e, cell, rate, speed);
+  for (int k = 0; k < numbers; k++)
+    if (!isfinite(own[k])) return refuse_numbers(e, cell, "energies");
   int returned = dvi__solid_stored(e, cell, own, &stored);
   if (returned != 0) return dvi__solid_refuse(e, cell, returned);
   sum->stored += stored;
@@ -68,7 +77,8 @@ static dvi_status add_energies(const dvi_elastic *e, int64_t cell, double t, con
     sum->kinetic += part * speed[k] * speed[k] / 2;
     sum->load -= f[k] * own[k];
   }
-  return DVI_OK;
+  if (isfinite(sum->kinetic) && isfinite(sum->stored) && isfinite(sum->load)) return DVI_OK;
+  return refuse_numbers(e, cell, "energies");
 }
 
 dvi_status dvi_elastic_energy(const dvi_elastic *elastic, double t, const double *u,
@@ -85,8 +95,9 @@ dvi_status dvi_elastic_energy(const dvi_elastic *elastic, double t, const double
                      "elastic: the energy of part \"%s\" is asked, %s: name a part of %s", name,
                      count < 0 ? "which the mesh has not" : "which has no cells",
                      elastic->n == 3 ? "tetrahedra" : "triangles");
-  *energies = (dvi_elastic_energies){0};
-  for (int64_t i = 0; i < count; i++) DVI_TRY(add_energies(elastic, cell[i], t, u, rate, energies));
+  dvi_elastic_energies sum = {0};
+  for (int64_t i = 0; i < count; i++) DVI_TRY(add_energies(elastic, cell[i], t, u, rate, &sum));
+  *energies = sum;
   return DVI_OK;
 }
 
@@ -102,6 +113,7 @@ static dvi_status find_stress(const dvi_elastic *e, int64_t cell, const double *
   dvi__solid_gather(e, cell, u, own);
   dvi__solid_strain(e, cell, own, H);
   const double J = 1 + dvi__trace(n, H) + dvi__higher_volume(n, H);
+  if (!isfinite(J)) return refuse_numbers(e, cell, "stresses");
   const int is_linear = material->law == DVI_ELASTIC_LINEAR,
             returned = dvi__law_stress(n, material, H, P);
   if (returned != 0) return dvi__solid_refuse(e, cell, returned);
@@ -111,6 +123,7 @@ static dvi_status find_stress(const dvi_elastic *e, int64_t cell, const double *
       double sum = P[i * n + j];
       for (int k = 0; k < n && !is_linear; k++) sum += P[i * n + k] * H[j * n + k];
       stress[i * n + j] = is_linear ? sum : sum / J;
+      if (!isfinite(sum)) return refuse_numbers(e, cell, "stresses");
     }
   return DVI_OK;
 }

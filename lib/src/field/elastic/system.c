@@ -25,7 +25,7 @@ void dvi__solid_system_destroy(dvi__solid_system **system)
 static dvi_status lay_out(dvi__solid_system *s)
 {
   const dvi_elastic *e = s->elastic;
-  DVI_TRY(dvi__solid_pattern_create(e, &s->pattern));
+  DVI_TRY(dvi__solid_rest_pattern(e, &s->pattern));
   const dvi__csr *matrix = &s->pattern.matrix;
   if (matrix->start[matrix->rows] > INT_MAX)
     return dvi__fail(DVI_BAD_SIZE, "elastic: an int cannot count %lld entries of a system's matrix",
@@ -38,11 +38,6 @@ static dvi_status lay_out(dvi__solid_system *s)
   for (int64_t i = 0; i <= e->unknowns; i++) s->start[i] = (int)matrix->start[i];
   for (int64_t k = 0; k < e->vertices * e->n; k++)
     if (e->unknown[k] >= 0) s->mass[e->unknown[k]] = e->mass[k / e->n];
-  for (int64_t c = 0; c < e->cells; c++) {
-    double K[DVI__SOLID_NUMBERS * DVI__SOLID_NUMBERS];
-    (void)dvi__solid_stiffness(e, c, NULL, K);
-    dvi__solid_add_matrix(e, &s->pattern, c, K, s->pattern.matrix.value);
-  }
   return DVI_OK;
 }
 
@@ -68,9 +63,8 @@ static int add_stored(dvi__solid_system *s)
 static dvi_status make(dvi__solid_system *s)
 {
   const dvi_elastic *e = s->elastic;
-  double omega;
   DVI_TRY(lay_out(s));
-  DVI_TRY(dvi_elastic_fastest(e, &omega));
+  DVI_TRY(dvi__solid_find_fastest(e, &s->pattern.matrix, s->mass));
   DVI_TRY(dvi__solid_make_pull(s));
   DVI_TRY(dvi__solid_make_load(s));
   DVI_TRY(dvi__solid_make_damping(s));

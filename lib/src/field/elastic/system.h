@@ -65,6 +65,9 @@ dvi_status dvi__solid_make_damping(dvi__solid_system *s);
 void dvi__solid_find_symmetries(dvi__solid_system *s);
 dvi_status dvi__solid_make_contacts(dvi__solid_system *s);
 
+/* Keep the bound of the frequencies at rest, by the stiffness and the masses of the unknowns. */
+dvi_status dvi__solid_find_fastest(const dvi_elastic *e, const dvi__csr *K, const double *mass);
+
 /* Tell if all laws are linear. */
 int dvi__solid_is_linear(const dvi_elastic *e);
 

@@ -149,6 +149,16 @@ dvi_status dvi__element_follow(dvi__stepper *self, const dvi__element_place *at,
   return status <= 0 ? status : fail_at_branch_end(self, at, Y, &end, &failure);
 }
 
+int dvi__element_is_quadratic(const dvi_system *system)
+{
+  if ((system->terms & DVI__CONSTANT_MASS) == 0 || system->lagrangian != NULL ||
+      system->slots != NULL || system->vector != NULL || system->place_rows > 0)
+    return 0;
+  for (int k = 0; k < system->potential_count; k++)
+    if (!system->potentials[k].callbacks.quadratic) return 0;
+  return 1;
+}
+
 int dvi__element_is_definite(const dvi_system *system, const dvi__evaluator *evaluator)
 {
   return system->lagrangian == NULL && system->slots == NULL && system->force_count == 0 &&
@@ -179,6 +189,14 @@ static int element_is_folded(const dvi__stepper *self, const dvi__element_place 
   return dvi__mass_sign(evaluator) > 0;
 }
 
+/* Tell whether the equations are linear, and so have one solution: the Lagrangian is quadratic, and
+ * forces are linear as far as the iteration shows. */
+static int element_is_linear(const dvi__element *own, const dvi__solve_report *report)
+{
+  static const double rounding = 1e-6; /* bends of equations that are linear, with small unknowns */
+  return own->quadratic && (!own->has_forces || report->bend <= rounding);
+}
+
 /* Newton's method takes a few iterations from a guess near the solution. Solutions by GMRES are
  * right to a part only, and the iterations that correct them say nothing of the branch. */
 static int most_sure_iterations(const dvi__element *own)
@@ -193,6 +211,7 @@ dvi__doubt dvi__element_doubt(const dvi__stepper *self, const dvi__element_place
   const dvi__element *own = self->own;
   if (own->rung == DVI__FIXED_POINT) return DVI__SURE;
   if (element_is_folded(self, at)) return DVI__ASTRAY;
+  if (own->rung != DVI__KINSOL && element_is_linear(own, report)) return DVI__SURE;
   if (own->rung == DVI__KINSOL) return DVI__DOUBTED; /* KINSOL reports nothing of its way */
   if (own->rung == DVI__NEWTON && report->iterations - report->idle <= most_sure_iterations(own))
     return DVI__SURE;

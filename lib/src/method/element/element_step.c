@@ -187,6 +187,8 @@ dvi_status dvi__element_create(dvi__stepper *self, const dvi__action_space *spac
   DVI_TRY(dvi__action_create(self->system, space, self->counters, &own->action));
   self->bound = dvi__action_has_preconditioner(own->action);
   own->has_forces = self->system->force_count > 0;
+  own->has_rates = !self->system->autonomous && dvi__system_has_rates(self->system) == DVI_OK;
+  own->quadratic = dvi__element_is_quadratic(self->system);
   own->definite = dvi__element_is_definite(self->system, dvi__action_evaluator(own->action));
   self->weighs_damping = self->system->damping > 0;
   if (self->system->place_rows > 0) DVI_TRY(dvi__action_constrain(own->action));
@@ -222,7 +224,7 @@ dvi_status dvi__element_centre(dvi__stepper *self, const dvi__centring *centring
 dvi_status dvi__element_constrain_velocities(dvi__stepper *self, dvi__velocity_rule rule)
 {
   dvi__element *own = self->own;
-  own->definite = 0;
+  own->definite = own->quadratic = 0;
   DVI_TRY(dvi__action_constrain_velocities(own->action, rule));
   return element_renew_solver(self);
 }
@@ -230,7 +232,7 @@ dvi_status dvi__element_constrain_velocities(dvi__stepper *self, dvi__velocity_r
 dvi_status dvi__element_add_term(dvi__stepper *self, const dvi__row_term *term)
 {
   dvi__element *own = self->own;
-  own->definite = 0;
+  own->definite = own->quadratic = 0;
   DVI_TRY(dvi__action_add_term(own->action, term));
   return element_renew_solver(self);
 }
@@ -450,6 +452,23 @@ static int element_sign(const dvi__stepper *self)
   return by_newton ? dvi__linear_sign(dvi__solver_linear(own->solver)) : 0;
 }
 
+/* Find what forces supply, for the user's balances, and with what time supplies for the test of a
+ * solution in doubt. */
+static dvi_status element_supply(dvi__stepper *self, const dvi__state *state)
+{
+  dvi__element *own = self->own;
+  const int is_balanced = own->has_forces || self->system->damping > 0 || own->has_rates,
+            is_tested = is_balanced && (self->doubt != DVI__SURE || self->asks_work);
+  double driving = 0;
+  if (!is_tested && state->supplied == NULL) return DVI_OK;
+  DVI_TRY(dvi__action_supplies(own->action, own->Y, own->supply));
+  if (!is_tested) return DVI_OK;
+  if (own->has_rates) DVI_TRY(dvi__action_driving(own->action, own->Y, &driving));
+  own->work = own->supply[0] + driving;
+  self->work = &own->work;
+  return DVI_OK;
+}
+
 dvi_status dvi__element_step(dvi__stepper *self, dvi__state *state, double h)
 {
   dvi__element *own = self->own;
@@ -461,7 +480,7 @@ dvi_status dvi__element_step(dvi__stepper *self, dvi__state *state, double h)
   DVI_TRY(dvi__action_stays_regular(own->action, element_sign(self)));
   dvi__action_forces(own->action, self->memory + dvi__element_forces(self));
   if (own->choice == DVI__SOLVER_CERTIFIED) DVI_TRY(element_certify(self, &at, own->Y, &report));
-  if (state->supplied != NULL) DVI_TRY(dvi__action_supplies(own->action, own->Y, own->supply));
+  DVI_TRY(element_supply(self, state));
   return element_advance(self, state, h);
 }
 

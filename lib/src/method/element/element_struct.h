@@ -45,7 +45,9 @@ typedef struct dvi__element {
   /* a potential without a Hessian, so that fixed-point iteration is the only rung; its name, or
    * NULL */
   const char *without_hessian;
+  int quadratic;  /* the Lagrangian is */
   int has_forces; /* forces without a potential make Jacobians that are not symmetric */
+  int has_rates;  /* the Lagrangian depends on time, and tells its rate */
   dvi__solver *solver;
   dvi__newton_form newton;
   int choice;     /* choice of the solver */
@@ -57,6 +59,7 @@ typedef struct dvi__element {
   const dvi__element_place *forces_of;
   double *dq, *dq_low, *dp;
   double *supply; /* [1 + symmetries] what forces supply in the step */
+  double work;    /* what forces and time supply to the energy */
   double *guess;  /* [unknowns] guess of the iteration, in charts */
   double *branch; /* [DVI__BRANCH_ROOM * unknowns] work to follow a branch, NULL until needed */
 } dvi__element;
@@ -86,6 +89,9 @@ dvi_status dvi__element_straight(dvi__stepper *self, const dvi__element_place *a
  * ladder, with the thread's sentence, or DVI_OK. */
 dvi_status dvi__element_follow(dvi__stepper *self, const dvi__element_place *at, dvi_status whole,
                                double *Y);
+
+/* Tell whether the mass is constant, and all potentials are declared quadratic. */
+int dvi__element_is_quadratic(const dvi_system *system);
 
 /* Tell whether the mass makes the symmetric parts of a short step's Jacobian definite. */
 int dvi__element_is_definite(const dvi_system *system, const dvi__evaluator *evaluator);

@@ -169,19 +169,6 @@ static bool read_component(dvi__context *c, dvi__node node, unsigned may, dvi__l
                            "%s is a function of position, without the fields", c->where);
 }
 
-/* Refuse a value of another shape. */
-static bool check_shape(const dvi__context *c, const dvi__tree *tree, dvi__shape found,
-                        dvi__shape right)
-{
-  char shape[48], needed[48];
-  if (found.rank == right.rank && (right.rank == 0 || found.rows == right.rows) &&
-      (right.rank < 2 || found.columns == right.columns))
-    return true;
-  return dvi__scene_refuse(c->scene, tree->span, "%s is %s here, where %s is needed", c->where,
-                           dvi__shape_text(found, shape, sizeof shape),
-                           dvi__shape_text(right, needed, sizeof needed));
-}
-
 /* Read a function, or its derivative along an axis from 0 on. */
 static bool read_function(dvi_scene *scene, const dvi__tree *tree, unsigned may, const char *where,
                           int axis, dvi__shape shape, dvi__local **local)
@@ -193,7 +180,7 @@ static bool read_function(dvi_scene *scene, const dvi__tree *tree, unsigned may,
     return false;
   dvi__value value = dvi__elaborate(&c, e);
   if (!dvi__failed(value) && axis >= 0) value = dvi__derivative_along(&c, value, axis, e->span);
-  bool good = value.shape.rank >= 0 && check_shape(&c, tree, value.shape, shape);
+  bool good = value.shape.rank >= 0 && dvi__want_shape(&c, tree->span, value.shape, shape);
   const int count = good ? dvi__value_size(value) : 0;
   for (int k = 0; k < count && good; k++)
     good = read_component(&c, value.node == NULL ? value.one : value.node[k], may, local + k);

@@ -19,20 +19,6 @@ struct dvi__density_probe {
 
 /* ---- reading ---- */
 
-/* Read a point, a number for each axis. */
-static bool read_point(dvi_scene *scene, const dvi__tree *tree, double *point)
-{
-  const int axes = scene->density->jets.dimension;
-  const bool is_list = tree->kind == DVI__SEQUENCE;
-  if ((is_list ? tree->count : 1) != axes || tree->kind == DVI__MAPPING)
-    return dvi__scene_refuse(scene, tree->span, "%s has %d coordinate%s here", "a point", axes,
-                             axes == 1 ? "" : "s");
-  for (int d = 0; d < axes; d++)
-    if (!dvi__tree_number(scene, is_list ? tree->child[d] : tree, "a coordinate", point + d))
-      return false;
-  return true;
-}
-
 /* Read a field at a point, u(0.5) or u(0.5, 1). */
 static bool read_call(dvi_scene *scene, const dvi__tree *tree, struct dvi__density_probe *probe)
 {
@@ -67,7 +53,8 @@ static bool read_mapping(dvi_scene *scene, const dvi__tree *tree, struct dvi__de
                              "a probe has an expression and a point, as in '{of: d(u,x), at: "
                              "0.5}', or an integral, as in '{integral: u^2}'");
   probe->is_integral = integral != NULL;
-  return (at == NULL || read_point(scene, at, probe->point)) &&
+  return (at == NULL ||
+          dvi__point_read(scene, at, scene->density->jets.dimension, "a point", probe->point)) &&
          dvi__local_read(scene, integral != NULL ? integral : of, DVI__OF_FIELD | DVI__MENTIONS_T,
                          integral != NULL ? "an integral" : "a probe", 1, &probe->function);
 }

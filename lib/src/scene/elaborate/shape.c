@@ -5,6 +5,17 @@
 #include "scene/elaborate/elaborate.h"
 #include "scene/elaborate/words.h"
 
+bool dvi__want_shape(const dvi__context *c, dvi__span span, dvi__shape found, dvi__shape right)
+{
+  char shape[48], needed[48];
+  if (found.rank == right.rank && (right.rank == 0 || found.rows == right.rows) &&
+      (right.rank < 2 || found.columns == right.columns))
+    return true;
+  return dvi__scene_refuse(c->scene, span, "%s is %s here, where %s is needed", c->where,
+                           dvi__shape_text(found, shape, sizeof shape),
+                           dvi__shape_text(right, needed, sizeof needed));
+}
+
 int dvi__value_size(dvi__value value)
 {
   return value.shape.rank == 0 ? 1 : value.shape.rows * value.shape.columns;

@@ -22,6 +22,9 @@ static inline bool dvi__same_shape(dvi__shape a, dvi__shape b)
   return a.rank == b.rank && a.rows == b.rows && a.columns == b.columns;
 }
 
+/* Refuse a value of another shape. */
+bool dvi__want_shape(const dvi__context *c, dvi__span span, dvi__shape found, dvi__shape right);
+
 /* Return how many numbers a value has. dvi__value_at returns the i-th of them. */
 int dvi__value_size(dvi__value value);
 dvi__node dvi__value_at(dvi__value value, int i);

@@ -99,17 +99,18 @@ static int push(double t, const double *X, const double *normal, double *force, 
 
 static bool read_load(dvi_scene *scene, const dvi__tree *key, const dvi__tree *tree)
 {
-  static const char *const known[] = {"force", "traction"};
+  static const char *const known[] = {"force", "traction"}, *const gravity = "gravity";
+  char hint[64];
   struct dvi__scene_elastic *s = scene->field->elastic;
   dvi__solid_function *function;
   int64_t cells, count;
-  if (!dvi__want_mapping(scene, tree, "a load") || !dvi__want_keys(scene, tree, "a load", 2, known))
-    return false;
-  if (tree->count != 1)
-    return dvi__scene_refuse(scene, tree->span,
-                             "a load is a force per volume of a part, as in '{force: [0, 0, -1]}', "
-                             "or a traction per area of a part of the boundary, as in '{traction: "
-                             "-2*normal}'");
+  if (tree->kind == DVI__MAPPING && !dvi__want_keys(scene, tree, "a load", 2, known)) return false;
+  if (tree->kind != DVI__MAPPING || tree->count != 1)
+    return dvi__scene_refuse(scene, key->span,
+                             "a load is 'gravity', or by a part's name a force per volume, as in "
+                             "'{force: [0, 0, -1]}', or of the boundary a traction per area, as in "
+                             "'{traction: -2*normal}'%s",
+                             dvi__nearest(key->text, 1, &gravity, hint, sizeof hint));
   const bool is_traction = strcmp(tree->key[0]->text, "traction") == 0;
   const int degree = scene->field->dimension - is_traction;
   (void)dvi_mesh_part_cells(scene->field->mesh, key->text, scene->field->dimension, &cells);
@@ -118,7 +119,12 @@ static bool read_load(dvi_scene *scene, const dvi__tree *key, const dvi__tree *t
     return dvi__scene_refuse(
         scene, key->span, "the mesh has no part '%s' of facets for a traction; 'boundary' is one",
         key->text);
-  if (count <= 0) return dvi__refuse_part(scene, key->span, key->text, true);
+  if (count == 0)
+    return dvi__scene_refuse(scene, key->span,
+                             "the part '%s' has no volume for a force; a part of the boundary has "
+                             "a 'traction', a force per area",
+                             key->text);
+  if (count < 0) return dvi__refuse_part(scene, key->span, key->text, true);
   if (!dvi__solid_function_read(
           scene, tree->child[0], DVI__SOLID_TIME | (is_traction ? DVI__SOLID_NORMAL : 0),
           scene->field->space, is_traction ? "a traction" : "a force", &function))

@@ -181,16 +181,6 @@ static bool make_component(dvi__context *c, dvi__node node, const dvi__tree *tre
   return dvi__make_potential(scene, "solid", term, f->component + i);
 }
 
-static bool check_shape(const dvi__context *c, const dvi__tree *tree, dvi__shape found, int count)
-{
-  char shape[48], needed[48];
-  const dvi__shape right = {count > 1, count, 1};
-  if (found.rank == right.rank && (right.rank == 0 || found.rows == right.rows)) return true;
-  return dvi__scene_refuse(c->scene, tree->span, "%s is %s here, where %s is needed", c->where,
-                           dvi__shape_text(found, shape, sizeof shape),
-                           dvi__shape_text(right, needed, sizeof needed));
-}
-
 bool dvi__solid_function_read(dvi_scene *scene, const dvi__tree *tree, unsigned may, int count,
                               const char *where, dvi__solid_function **function)
 {
@@ -204,7 +194,8 @@ bool dvi__solid_function_read(dvi_scene *scene, const dvi__tree *tree, unsigned 
   if (!dvi__tree_expression(scene, tree, &e) || !dvi__context_make(&c, scene, mentions, where))
     return false;
   const dvi__value value = dvi__elaborate(&c, e);
-  bool good = !dvi__failed(value) && check_shape(&c, tree, value.shape, count);
+  bool good = !dvi__failed(value) &&
+              dvi__want_shape(&c, tree->span, value.shape, (dvi__shape){count > 1, count, 1});
   for (int i = 0; i < count && good; i++)
     good = make_component(&c, dvi__value_at(value, i), tree, may, f, i);
   dvi__context_free(&c);

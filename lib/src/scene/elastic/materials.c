@@ -121,15 +121,16 @@ static bool read_energy(dvi_scene *scene, const dvi__tree *law, const dvi__tree 
   return true;
 }
 
-static bool read_material(dvi_scene *scene, const dvi__tree *key, const dvi__tree *tree,
-                          dvi_elastic_material *m)
+static bool read_material(dvi_scene *scene, const char *part, dvi__span span, const dvi__tree *tree)
 {
   static const char *const known[] = {"law",    "lambda", "mu",    "young", "poisson",
                                       "mooney", "rho",    "alpha", "beta"};
+  struct dvi__scene_elastic *s = scene->field->elastic;
+  dvi_elastic_material *m = s->material + s->materials;
   int64_t count;
   const dvi_mesh *mesh = scene->field->mesh;
-  (void)dvi_mesh_part_cells(mesh, key->text, scene->field->dimension, &count);
-  if (count <= 0) return dvi__refuse_part(scene, key->span, key->text, true);
+  (void)dvi_mesh_part_cells(mesh, part, scene->field->dimension, &count);
+  if (count <= 0) return dvi__refuse_part(scene, span, part, true);
   if (!dvi__want_mapping(scene, tree, "a material") ||
       !dvi__want_keys(scene, tree, "a material", 9, known))
     return false;
@@ -138,7 +139,8 @@ static bool read_material(dvi_scene *scene, const dvi__tree *key, const dvi__tre
     return dvi__scene_refuse(scene, tree->span,
                              "a material has a law: linear, svk, neo-hookean, mooney-rivlin, or a "
                              "stored energy as an expression of F, I1, I2 and J");
-  *m = (dvi_elastic_material){.part = key->text, .law = find_law(law)};
+  s->material_span[s->materials++] = tree->span;
+  *m = (dvi_elastic_material){.part = part, .law = find_law(law)};
   const bool is_given = m->law == DVI_ELASTIC_ENERGY;
   return (is_given ? read_energy(scene, law, tree, m) : read_constants(scene, tree, m)) &&
          read_optional(scene, tree, "rho", false, 1, &m->rho) &&
@@ -146,21 +148,12 @@ static bool read_material(dvi_scene *scene, const dvi__tree *key, const dvi__tre
          read_optional(scene, tree, "beta", true, 0, &m->beta);
 }
 
-/* "all" is read first, so that parts replace it. */
 bool dvi__elastic_read_materials(dvi_scene *scene, const dvi__tree *section)
 {
   struct dvi__scene_elastic *s = scene->field->elastic;
-  if (!dvi__want_mapping(scene, section, "materials")) return false;
   const size_t room = (size_t)section->count + 1;
   s->material = dvi__arena_take(&scene->arena, room, sizeof *s->material);
   s->material_span = dvi__arena_take(&scene->arena, room, sizeof *s->material_span);
   if (s->material == NULL || s->material_span == NULL) return dvi__scene_no_memory(scene);
-  for (int special = 0; special < 2; special++)
-    for (int i = 0; i < section->count; i++) {
-      if ((strcmp(section->key[i]->text, "all") != 0) != special) continue;
-      s->material_span[s->materials] = section->child[i]->span;
-      if (!read_material(scene, section->key[i], section->child[i], s->material + s->materials++))
-        return false;
-    }
-  return true;
+  return dvi__read_all_first(scene, section, read_material);
 }

@@ -96,22 +96,45 @@ static bool evaluate(dvi_scene *scene, const dvi__solid_function *function, doub
   return true;
 }
 
-/* What is given counts more than the start. */
+/* Refuse displacements of the start, u [vertices*n], that differ from those that are given. */
+static bool agrees_with_given(dvi_scene *scene, const double *given)
+{
+  const struct dvi__scene_elastic *s = scene->field->elastic;
+  const double *X = dvi_mesh_points(scene->field->mesh);
+  const int n = scene->field->space;
+  const int64_t numbers = s->value != NULL ? dvi_mesh_count(scene->field->mesh, 0) * n : 0;
+  double size = 0;
+  for (int64_t k = 0; k < numbers; k++) size = fmax(size, fmax(fabs(X[k]), fabs(given[k])));
+  for (int64_t k = 0; k < numbers; k++)
+    if (!(fabs(s->u[k] - given[k]) <= 1e-9 * size))
+      return dvi__scene_refuse(
+          scene, dvi__tree_find(dvi__tree_find(scene->tree, "initial"), "u")->span,
+          "the start moves node %lld by %g along %c, where the boundary gives %g; let both be the "
+          "same there at t = 0",
+          (long long)(k / n), s->u[k], "xyz"[k % n], given[k]);
+  return true;
+}
+
+/* Velocities that are given count more than those of the start, as in a bar that hits a wall. */
 static bool make_start(dvi_scene *scene)
 {
   struct dvi__scene_elastic *s = scene->field->elastic;
   const size_t n = (size_t)scene->n, numbers = (size_t)dvi_mesh_count(scene->field->mesh, 0) *
                                                (size_t)scene->field->space;
+  double *given = dvi__arena_take(&scene->arena, numbers, sizeof *given);
   s->u = dvi__arena_take(&scene->arena, 2 * numbers, sizeof *s->u);
   scene->q = dvi__arena_take(&scene->arena, 3 * n, sizeof *scene->q);
-  if (s->u == NULL || scene->q == NULL) return dvi__scene_no_memory(scene);
+  if (given == NULL || s->u == NULL || scene->q == NULL) return dvi__scene_no_memory(scene);
   s->velocity = s->u + numbers;
   scene->v = scene->q + n;
   scene->p = scene->v + n;
   if (!evaluate(scene, s->value, s->u) || !evaluate(scene, s->rate, s->velocity)) return false;
   dvi_elastic_project(s->solid, s->u, s->velocity, scene->q, scene->v, scene->p);
-  const dvi_status status = dvi_elastic_lift(s->solid, 0, scene->q, scene->p, s->u, s->velocity);
-  return status == DVI_OK || refuse(scene, dvi__tree_find(scene->tree, "boundary")->span, status);
+  const dvi_status status = dvi_elastic_lift(s->solid, 0, scene->q, scene->p, given, s->velocity);
+  if (status != DVI_OK) return refuse(scene, dvi__tree_find(scene->tree, "boundary")->span, status);
+  if (!agrees_with_given(scene, given)) return false;
+  s->u = given;
+  return true;
 }
 
 /* A cell may be inverted where its law is not defined. */

@@ -85,40 +85,44 @@ bool dvi__refuse_part(dvi_scene *scene, dvi__span span, const char *name, bool o
                            dvi__list_words(parts, part, " and ", list, sizeof list));
 }
 
-static bool read_material(dvi_scene *scene, const dvi__tree *key, const dvi__tree *tree)
+static bool read_material(dvi_scene *scene, const char *part, dvi__span span, const dvi__tree *tree)
 {
   static const char *const known[] = {"rho", "a"};
   dvi__place *place;
   int64_t count;
   const dvi_mesh *mesh = scene->field->mesh;
-  (void)dvi_mesh_part_cells(mesh, key->text, dvi_mesh_dimension(mesh), &count);
-  if (count <= 0) return dvi__refuse_part(scene, key->span, key->text, true);
+  (void)dvi_mesh_part_cells(mesh, part, dvi_mesh_dimension(mesh), &count);
+  if (count <= 0) return dvi__refuse_part(scene, span, part, true);
   if (!dvi__want_mapping(scene, tree, "a material") ||
       !dvi__want_keys(scene, tree, "a material", 2, known))
     return false;
   for (int k = 0; k < 2; k++) {
     const dvi__tree *value = dvi__tree_find(tree, known[k]);
     const dvi__quantity quantity = {known[k], false, 1};
-    if (value != NULL && (!dvi__place_read(scene, value, 0, "a material", &place) ||
-                          !dvi__quantity_set(scene, &quantity, key->text, value->span, place,
-                                             &scene->field->factor[k])))
+    if (value != NULL &&
+        (!dvi__place_read(scene, value, 0, "a material", &place) ||
+         !dvi__quantity_set(scene, &quantity, part, value->span, place, &scene->field->factor[k])))
       return false;
   }
   return true;
 }
 
-/* "all" is read first, so that parts replace it. */
-bool dvi__read_materials(dvi_scene *scene, const dvi__tree *section)
+bool dvi__read_all_first(dvi_scene *scene, const dvi__tree *section, dvi__part_reader *read)
 {
-  if (dvi__is_elastic(scene)) return dvi__elastic_read_materials(scene, section);
-  if (scene->field->maxwell != NULL) return dvi__maxwell_read_materials(scene, section);
   if (!dvi__want_mapping(scene, section, "materials")) return false;
   for (int special = 0; special < 2; special++)
     for (int i = 0; i < section->count; i++)
       if ((strcmp(section->key[i]->text, "all") != 0) == special &&
-          !read_material(scene, section->key[i], section->child[i]))
+          !read(scene, section->key[i]->text, section->key[i]->span, section->child[i]))
         return false;
   return true;
+}
+
+bool dvi__read_materials(dvi_scene *scene, const dvi__tree *section)
+{
+  if (dvi__is_elastic(scene)) return dvi__elastic_read_materials(scene, section);
+  if (scene->field->maxwell != NULL) return dvi__maxwell_read_materials(scene, section);
+  return dvi__read_all_first(scene, section, read_material);
 }
 
 /* ---- the boundary ---- */

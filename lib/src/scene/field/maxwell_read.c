@@ -116,13 +116,23 @@ void dvi__maxwell_form(const struct dvi__scene_field *field, bool is_B, const do
 
 /* ---- materials ---- */
 
-static bool read_material(dvi_scene *scene, const char *part, const dvi__tree *tree)
+static bool part_is_there(dvi_scene *scene, const char *part, dvi__span span)
+{
+  const dvi_mesh *mesh = scene->field->mesh;
+  int64_t count = strcmp(part, "all") == 0;
+  if (mesh != NULL) (void)dvi_mesh_part_cells(mesh, part, dvi_mesh_dimension(mesh), &count);
+  if (count > 0) return true;
+  if (mesh != NULL) return dvi__refuse_part(scene, span, part, true);
+  return dvi__scene_refuse(scene, span, "a grid has no part '%s' of cells; it has all", part);
+}
+
+static bool read_material(dvi_scene *scene, const char *part, dvi__span span, const dvi__tree *tree)
 {
   static const char *const known[] = {"eps", "mu", "sigma"};
   struct dvi__scene_maxwell *m = scene->field->maxwell;
   dvi__scene_material *material = m->material + m->materials++;
   *material = (dvi__scene_material){.part = part};
-  if (!dvi__want_mapping(scene, tree, "a material") ||
+  if (!part_is_there(scene, part, span) || !dvi__want_mapping(scene, tree, "a material") ||
       !dvi__want_keys(scene, tree, "a material", 3, known))
     return false;
   for (int i = 0; i < DVI__QUANTITIES; i++) {
@@ -134,17 +144,7 @@ static bool read_material(dvi_scene *scene, const char *part, const dvi__tree *t
   return true;
 }
 
-static bool part_is_there(dvi_scene *scene, const char *part, dvi__span span)
-{
-  const dvi_mesh *mesh = scene->field->mesh;
-  int64_t count = strcmp(part, "all") == 0;
-  if (mesh != NULL) (void)dvi_mesh_part_cells(mesh, part, dvi_mesh_dimension(mesh), &count);
-  if (count > 0) return true;
-  if (mesh != NULL) return dvi__refuse_part(scene, span, part, true);
-  return dvi__scene_refuse(scene, span, "a grid has no part '%s' of cells; it has all", part);
-}
-
-/* Materials are those of all, or by part, of which "all" comes first. */
+/* Materials are those of all, or by part. */
 bool dvi__maxwell_read_materials(dvi_scene *scene, const dvi__tree *section)
 {
   struct dvi__scene_maxwell *m = scene->field->maxwell;
@@ -152,16 +152,8 @@ bool dvi__maxwell_read_materials(dvi_scene *scene, const dvi__tree *section)
   m->material = dvi__arena_take(&scene->arena, (size_t)section->count + 1, sizeof *m->material);
   if (m->material == NULL) return dvi__scene_no_memory(scene);
   if (section->count > 0 && section->child[0]->kind != DVI__MAPPING)
-    return read_material(scene, "all", section);
-  for (int special = 0; special < 2; special++)
-    for (int i = 0; i < section->count; i++) {
-      const dvi__tree *key = section->key[i];
-      if ((strcmp(key->text, "all") != 0) != special) continue;
-      if (!part_is_there(scene, key->text, key->span) ||
-          !read_material(scene, key->text, section->child[i]))
-        return false;
-    }
-  return true;
+    return read_material(scene, "all", section->span, section);
+  return dvi__read_all_first(scene, section, read_material);
 }
 
 /* ---- walls ---- */

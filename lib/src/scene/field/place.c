@@ -108,19 +108,6 @@ int dvi__place_vector_value(const double *x, double *value, void *user)
   return failed;
 }
 
-bool dvi__point_read(dvi_scene *scene, const dvi__tree *tree, int count, const char *what,
-                     double *point)
-{
-  const bool is_list = tree->kind == DVI__SEQUENCE;
-  if ((is_list ? tree->count : 1) != count || tree->kind == DVI__MAPPING)
-    return dvi__scene_refuse(scene, tree->span, "%s has %d coordinate%s here", what, count,
-                             count == 1 ? "" : "s");
-  for (int l = 0; l < count; l++)
-    if (!dvi__tree_number(scene, is_list ? tree->child[l] : tree, "a coordinate", point + l))
-      return false;
-  return true;
-}
-
 /* ---- a potential ---- */
 
 /* The points of a block, component by component. */

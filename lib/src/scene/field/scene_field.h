@@ -69,10 +69,6 @@ bool dvi__place_vector_read(dvi_scene *scene, const dvi__tree *tree, int count, 
 /* A callback that evaluates all of them. `user` is the vector. */
 int dvi__place_vector_value(const double *x, double *value, void *user);
 
-/* Read a point, or a direction, of `count` numbers. */
-bool dvi__point_read(dvi_scene *scene, const dvi__tree *tree, int count, const char *what,
-                     double *point);
-
 /* A number that each cell has: its name, and its value where nothing is said. */
 typedef struct dvi__quantity {
   const char *name;
@@ -94,6 +90,9 @@ bool dvi__complain_of_field(dvi_scene *scene, const dvi__tree *otherwise, dvi_st
 typedef bool dvi__part_reader(dvi_scene *scene, const char *part, dvi__span span,
                               const dvi__tree *tree);
 bool dvi__read_by_part(dvi_scene *scene, const dvi__tree *section, dvi__part_reader *read);
+
+/* Read materials by part. "all" is read first, so that parts replace it. */
+bool dvi__read_all_first(dvi_scene *scene, const dvi__tree *section, dvi__part_reader *read);
 
 /* Refuse the name of a part that the mesh has not, and list those that it has. */
 bool dvi__refuse_part(dvi_scene *scene, dvi__span span, const char *name, bool of_cells);

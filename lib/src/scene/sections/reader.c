@@ -110,17 +110,22 @@ const char *dvi__word_of(const dvi_scene *scene, const dvi__expression *e)
   return size > 0 && strncmp(e->name, part->prefix, size) == 0 ? e->name + size : e->name;
 }
 
-bool dvi__tree_number(dvi_scene *scene, const dvi__tree *tree, const char *what, double *number)
+static bool read_number(dvi_scene *scene, const dvi__expression *e, const char *what,
+                        double *number)
 {
-  const dvi__expression *e;
   dvi__context c;
   dvi__node node;
-  if (!dvi__tree_expression(scene, tree, &e) || !dvi__context_make(&c, scene, 0, what))
-    return false;
+  if (!dvi__context_make(&c, scene, 0, what)) return false;
   const bool good = dvi__elaborate_number(&c, e, &node) &&
                     dvi__constants_of(&c, e, dvi__number_value(node), number);
   dvi__context_free(&c);
   return good;
+}
+
+bool dvi__tree_number(dvi_scene *scene, const dvi__tree *tree, const char *what, double *number)
+{
+  const dvi__expression *e = NULL;
+  return dvi__tree_expression(scene, tree, &e) && read_number(scene, e, what, number);
 }
 
 bool dvi__tree_whole(dvi_scene *scene, const dvi__tree *tree, const char *what, int least,
@@ -135,13 +140,28 @@ bool dvi__tree_whole(dvi_scene *scene, const dvi__tree *tree, const char *what, 
   return true;
 }
 
+bool dvi__point_read(dvi_scene *scene, const dvi__tree *tree, int count, const char *what,
+                     double *point)
+{
+  const dvi__expression *e = NULL;
+  if (!dvi__tree_expression(scene, tree, &e) || e == NULL) return false;
+  const bool is_list = e->form == DVI__FORM_LIST;
+  if ((is_list ? e->count : 1) != count)
+    return dvi__scene_refuse(scene, tree->span, "%s has %d coordinate%s here, not %d", what, count,
+                             count == 1 ? "" : "s", is_list ? e->count : 1);
+  for (int l = 0; l < count; l++)
+    if (!read_number(scene, is_list ? e->part[l] : e, "a coordinate", point + l)) return false;
+  return true;
+}
+
 bool dvi__tree_word(dvi_scene *scene, const dvi__tree *tree, const char *what, int count,
                     const char *const *word, int *which)
 {
   if (!dvi__want_text(scene, tree, what)) return false;
   for (*which = 0; *which < count; ++*which)
     if (strcmp(tree->text, word[*which]) == 0) return true;
-  char list[128];
+  char list[128], hint[64];
   (void)dvi__list_words(count, word, " or ", list, sizeof list);
-  return dvi__scene_refuse(scene, tree->span, "%s is %s", what, list);
+  return dvi__scene_refuse(scene, tree->span, "%s is %s%s", what, list,
+                           dvi__nearest(tree->text, count, word, hint, sizeof hint));
 }

@@ -50,6 +50,10 @@ bool dvi__tree_whole(dvi_scene *scene, const dvi__tree *tree, const char *what, 
 bool dvi__add_lines(dvi_scene *scene, const char *name, dvi__span span, int rank, int first,
                     int size);
 
+/* Read a point, or a direction, of `count` numbers. */
+bool dvi__point_read(dvi_scene *scene, const dvi__tree *tree, int count, const char *what,
+                     double *point);
+
 /* Read one of some words. */
 bool dvi__tree_word(dvi_scene *scene, const dvi__tree *tree, const char *what, int count,
                     const char *const *word, int *which);

@@ -158,6 +158,10 @@ void dvi__action_move_ends(dvi__action *action, const double *dY, double *dp);
  * path Y, [1 + symmetries]. The gradients of the last residual are lost. */
 dvi_status dvi__action_supplies(dvi__action *action, const double *Y, double *supply);
 
+/* Compute what the Lagrangian's dependence on time supplies to the energy, as far as rates are
+ * declared (dvi__system_has_rates). The gradients of the last residual are lost. */
+dvi_status dvi__action_driving(dvi__action *action, const double *Y, double *work);
+
 /* Give the time that passes over the element with the path Y. It is h, and h sum_j b_j g(Q_j) for a
  * time-transformed system. */
 dvi_status dvi__action_duration(dvi__action *action, const double *Y, double *duration);

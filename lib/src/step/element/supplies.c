@@ -6,6 +6,8 @@
  * Damping takes h sum_j b_j gamma L_v_j.V_j from the energy. From the momenta it takes its part at
  * both ends (method/damping.h), and the weights of a damped action remain in the second sum.
  *
+ * A Lagrangian that depends on time supplies -h sum_j b_j L_t_j to the energy.
+ *
  * Source: Marsden and West 2001, sec. 3.1.4 (the discrete Noether theorem with forces). */
 #include <string.h>
 
@@ -42,5 +44,15 @@ dvi_status dvi__action_supplies(dvi__action *a, const double *Y, double *supply)
   }
   if (s->damping > 0) DVI_TRY(count_damping(a, &supply[0]));
   for (int i = 0; i < count; i++) supply[i] *= a->h;
+  return DVI_OK;
+}
+
+dvi_status dvi__action_driving(dvi__action *a, const double *Y, double *work)
+{
+  double *rate = a->L_q; /* as above */
+  dvi__action_stages(a, Y);
+  DVI_TRY(dvi__lagrangian_rate(a->evaluator, a->r, a->t, a->Q, a->V, rate));
+  *work = 0;
+  for (int j = 0; j < a->r; j++) *work -= a->h * a->weight[j] * rate[j];
   return DVI_OK;
 }

@@ -152,11 +152,14 @@ typedef struct dvi__instant {
   double *v;
 } dvi__instant;
 
-/* Compute the change of the energy between two states of a step, and its size. The size is the
- * larger kinetic energy p.v/2. A one-form has none. There, and on phase space, the size is sum |H_q
- * dq| + |H_p dp|, the energy that the step moves between the coordinates. Factors are excluded. */
+/* Compute the change of the energy between two states of a step, less the work of forces, and its
+ * size. `work` is what forces without a potential, and rates L_t, supplied. NULL stands for the
+ * mean of the forces' power at both ends. The size is the larger kinetic energy p.v/2. A one-form
+ * has none. There, and on phase space, the size is sum |H_q dq| + |H_p dp|, the energy that the
+ * step moves between the coordinates. Factors are excluded. */
 dvi_status dvi__energy_change(dvi__evaluator *e, const dvi__instant *before,
-                              const dvi__instant *after, double *change, double *exchanged);
+                              const dvi__instant *after, const double *work, double *change,
+                              double *exchanged);
 
 /* Compute the distance between a step's change and the mean of the rates at its ends, relative to
  * the larger change. The worst one of all coordinates counts, and of all momenta of a Lagrangian.

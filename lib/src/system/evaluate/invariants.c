@@ -106,8 +106,7 @@ static double along(int n, const double *x, const double *v)
   return sum;
 }
 
-/* Compute the power F.v of the forces without a potential, and of constraints that move with time,
- * or are affine, which is that of all forces less that of the Lagrangian's own. */
+/* Compute the power F.v of the forces without a potential. */
 static dvi_status power_of_forces(dvi__evaluator *e, const dvi__instant *at, double *power)
 {
   const dvi_system *s = e->system;
@@ -118,6 +117,16 @@ static dvi_status power_of_forces(dvi__evaluator *e, const dvi__instant *at, dou
     *power += along(s->n, F, at->v);
   }
   if (s->damping > 0) *power -= s->damping * along(s->n, at->p, at->v);
+  return DVI_OK;
+}
+
+/* Compute the power of constraints that move with time, or are affine, which is that of all forces
+ * less that of the Lagrangian's own. */
+static dvi_status power_of_constraints(dvi__evaluator *e, const dvi__instant *at, double *power)
+{
+  const dvi_system *s = e->system;
+  double *F = e->point[2];
+  *power = 0;
   if (s->row_count == 0 || (s->autonomous && s->nonholonomic_count == 0)) return DVI_OK;
   DVI_TRY(s->dynamics->forces(e, at->t, at->q, at->v, F));
   *power += along(s->n, F, at->v);
@@ -126,15 +135,32 @@ static dvi_status power_of_forces(dvi__evaluator *e, const dvi__instant *at, dou
   return DVI_OK;
 }
 
-static dvi_status change_of_lagrangian(dvi__evaluator *e, const dvi__instant *before,
-                                       const dvi__instant *after, double *change, double *exchanged)
+/* Compute the work of a power over the step, from its mean at both ends. */
+static dvi_status
+work_by_ends(dvi__evaluator *e, const dvi__instant *before, const dvi__instant *after,
+             dvi_status (*power)(dvi__evaluator *e, const dvi__instant *at, double *power),
+             double *work)
 {
-  double E0, E1, T0, T1, size0, size1, power0, power1;
+  double power0, power1;
+  DVI_TRY(power(e, before, &power0));
+  DVI_TRY(power(e, after, &power1));
+  *work = 0.5 * (after->t - before->t) * (power0 + power1);
+  return DVI_OK;
+}
+
+static dvi_status change_of_lagrangian(dvi__evaluator *e, const dvi__instant *before,
+                                       const dvi__instant *after, const double *by_forces,
+                                       double *change, double *exchanged)
+{
+  double E0, E1, T0, T1, size0, size1, work = 0, by_constraints;
   DVI_TRY(kinetic_size(e, before, &E0, &T0, &size0));
   DVI_TRY(kinetic_size(e, after, &E1, &T1, &size1));
-  DVI_TRY(power_of_forces(e, before, &power0));
-  DVI_TRY(power_of_forces(e, after, &power1));
-  const double work = 0.5 * (after->t - before->t) * (power0 + power1);
+  if (by_forces != NULL)
+    work = *by_forces;
+  else
+    DVI_TRY(work_by_ends(e, before, after, power_of_forces, &work));
+  DVI_TRY(work_by_ends(e, before, after, power_of_constraints, &by_constraints));
+  work += by_constraints;
   *change = fmax(fabs(E1 - E0 - work) - rounding * fmax(size0, size1), 0);
   *exchanged = fmax(fmax(T0, T1), fabs(work));
   return DVI_OK;
@@ -178,12 +204,13 @@ static dvi_status change_of_hamiltonian(dvi__evaluator *e, const dvi__instant *b
 }
 
 dvi_status dvi__energy_change(dvi__evaluator *e, const dvi__instant *before,
-                              const dvi__instant *after, double *change, double *exchanged)
+                              const dvi__instant *after, const double *work, double *change,
+                              double *exchanged)
 {
   e->span = fabs(after->t - before->t);
-  const dvi_status status = (e->system->dynamics->has_kinetic_energy
-                                 ? change_of_lagrangian
-                                 : change_of_hamiltonian)(e, before, after, change, exchanged);
+  const dvi_status status = e->system->dynamics->has_kinetic_energy
+                                ? change_of_lagrangian(e, before, after, work, change, exchanged)
+                                : change_of_hamiltonian(e, before, after, change, exchanged);
   e->span = 0;
   return status;
 }
