@@ -1,4 +1,4 @@
-/* labels: order */
+/* labels: order slow */
 /* Methods with holonomic constraints: orders, what is kept, multipliers, starts, refusals. */
 #include <math.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-/* labels: invariant */
+/* labels: invariant slow */
 /* The discrete action promises, beside its order, a symplectic and reversible step, and momenta
  * conserved up to roundoff. */
 #include <check.h>

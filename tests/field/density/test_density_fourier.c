@@ -1,3 +1,4 @@
+/* labels: unit slow */
 /* Fields with densities on Fourier modes. */
 #include <dvi/integrator.h>
 #include <math.h>

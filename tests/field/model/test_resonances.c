@@ -1,4 +1,4 @@
-/* labels: order */
+/* labels: order slow */
 /* Cavities of tetrahedra: their lowest frequencies converge with the second order. */
 #include <dvi/maxwell.h>
 #include <math.h>

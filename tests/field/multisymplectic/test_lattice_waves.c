@@ -1,4 +1,4 @@
-/* labels: unit */
+/* labels: unit slow */
 /* Known waves: the dispersion of plane ones, exact steps, breathers and kinks, orders, energies. */
 #include <dvi/dvi.h>
 #include <math.h>

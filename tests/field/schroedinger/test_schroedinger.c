@@ -1,3 +1,4 @@
+/* labels: unit slow */
 /* Methods in time for Schroedinger's equation: phases, orders, norms, and solitons. */
 #include <math.h>
 #include <stdlib.h>

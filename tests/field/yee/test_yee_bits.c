@@ -1,4 +1,4 @@
-/* labels: unit */
+/* labels: unit slow */
 /* The same bits for all threads, instruction sets, tiles, cuts of the way, and after a restart; and
  * what is refused. */
 #include <dvi/yee.h>

@@ -1,4 +1,4 @@
-/* labels: order */
+/* labels: order slow */
 /* Bodies in joints: orders, known digits, what is kept, the judge, starts and refusals. */
 #include <math.h>
 #include <stdio.h>
