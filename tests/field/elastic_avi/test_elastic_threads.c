@@ -247,7 +247,7 @@ static int is_ready(const dvi__solid_avi *avi, const int64_t *count, int64_t c)
   const int width = avi->n + 1;
   const double t = next_time(avi, count, c);
   for (int a = 0; a < width; a++) {
-    const int v = avi->corner[c * width + a];
+    const int v = avi->cell[c].corner[a];
     for (int64_t k = avi->cell_start[v]; k < avi->cell_start[v + 1]; k++) {
       const int other = avi->cell_of[k];
       const double then = next_time(avi, count, other);

@@ -9,7 +9,6 @@ typedef struct dvi__solid_request {
   int threads;
   int is_equal;  /* one step for all cells */
   int is_free;   /* cells have their own steps, not powers of 2 of the shortest one */
-  int is_queued; /* events are always taken from a calendar, with the same bits */
   int is_linear; /* for small vibrations about rest, without loads and obstacles */
   double band;   /* by which the energy may grow until a run stops. 0 for 2 */
 } dvi__solid_request;
@@ -19,6 +18,7 @@ typedef struct dvi__solid_plan {
   double *bound; /* [cells] longest stable step of a cell by itself. Infinite without events */
   double *step;  /* [cells] infinite without events */
   int *class;    /* [cells] log2 of the step beside the shortest one. 0 for free steps */
+  int *rank;     /* [cells] on a curve through the solid, near for neighbours */
   int classes;
   double shortest, longest, tightest; /* steps, and the least bound */
   int64_t tightest_cell;
