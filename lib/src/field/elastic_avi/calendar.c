@@ -51,7 +51,7 @@ void dvi__calendar_clear(dvi__calendar *c, double origin)
   c->is_open = 0;
   c->empty = 0;
   for (int64_t i = 0; i < c->days; i++) c->day[i] = (dvi__calendar_day){.page = -1};
-  for (int64_t i = 0; i < c->pages; i++) c->page[i].before = i + 1;
+  for (int64_t i = 0; i < c->pages; i++) c->page[i].before = (int)i + 1;
 }
 
 static int is_before(const dvi__calendar_event *a, const dvi__calendar_event *b)
@@ -88,7 +88,7 @@ void dvi__calendar_put(dvi__calendar *c, double t, int64_t number)
   dvi__calendar_day *on = c->day + (day & (c->days - 1));
   const int64_t place = on->events++ % PAGE;
   if (place == 0) {
-    const int page = (int)c->empty;
+    const int page = c->empty;
     c->empty = c->page[page].before;
     c->page[page].before = on->page;
     on->page = page;
@@ -127,30 +127,40 @@ static void sort(dvi__calendar *c, int64_t start)
     memcpy(c->event + start, event + start, (size_t)(c->end - start) * sizeof *event);
 }
 
-/* Move the pages of the next day, the last one first, behind the sorted events. */
+/* Fetch the last page of a day. */
+#define FETCH_PAGE(page)                                                      \
+  for (size_t line = 0; line < sizeof *(page); line += 64) /* of the cache */ \
+  __builtin_prefetch((const char *)(page) + line)
+
+/* Move the pages of a day, the last one first, to a place of the sorted events. */
+static void take_pages(dvi__calendar *c, dvi__calendar_day *day, int64_t start)
+{
+  for (int64_t left = day->events; left > 0;) {
+    dvi__calendar_page *page = c->page + day->page;
+    const int before = page->before, count = (int)(left - 1) % PAGE + 1;
+    left -= count;
+    memcpy(c->event + start + left, page->event, (size_t)count * sizeof *page->event);
+    page->before = c->empty;
+    c->empty = day->page;
+    day->page = before;
+  }
+}
+
+/* Sort the events of the next day behind the others. */
 static void open_day(dvi__calendar *c)
 {
   c->today += c->is_open;
   c->is_open = 1;
   dvi__calendar_day *day = c->day + (c->today & (c->days - 1));
+  const dvi__calendar_day *next = c->day + ((c->today + 1) & (c->days - 1));
+  if (next->events > 0) FETCH_PAGE(c->page + next->page);
   if (day->events == 0) return;
   close_gap(c);
   const int64_t start = c->end;
+  take_pages(c, day, start);
   c->end += day->events;
-  for (int64_t left = day->events; left > 0;) {
-    dvi__calendar_page *page = c->page + day->page;
-    const int64_t before = page->before, count = (left - 1) % PAGE + 1;
-    left -= count;
-    memcpy(c->event + start + left, page->event, (size_t)count * sizeof *page->event);
-    page->before = c->empty;
-    c->empty = day->page;
-    day->page = (int)before;
-  }
   c->waiting -= day->events;
   day->events = 0;
-  const int64_t next = c->day[(c->today + 1) & (c->days - 1)].page;
-  for (int line = 0; line < 8 && next >= 0; line++)
-    __builtin_prefetch((const char *)(c->page + next) + 64 * line);
   sort(c, start);
 }
 

@@ -19,7 +19,7 @@ enum { DVI__CALENDAR_PAGE = 31 };
 
 typedef struct dvi__calendar_page {
   dvi__calendar_event event[DVI__CALENDAR_PAGE];
-  int64_t before; /* the page before, of the same day or of those that are empty. Or -1 */
+  int before; /* the page before, of the same day or of those that are empty. Or -1 */
 } dvi__calendar_page;
 
 typedef struct dvi__calendar_day {
@@ -33,7 +33,7 @@ typedef struct dvi__calendar {
   int64_t today, days;         /* the last day that was opened, since the origin. A power of 2 */
   int64_t waiting;             /* events on pages */
   int64_t first, end;          /* of the sorted events that have not happened */
-  int64_t empty;               /* an empty page */
+  int empty;                   /* an empty page */
   dvi__calendar_day *day;      /* [days] */
   dvi__calendar_page *page;    /* [pages] */
   dvi__calendar_event *event;  /* [count] in their order */

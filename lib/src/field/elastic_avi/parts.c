@@ -1,7 +1,8 @@
-/* Parts of the cells, one for each thread.
+/* Parts of the cells, one for each thread, with equal numbers of events in a unit of time.
  *
- * The cells stand in a row along Hilbert's curve, which is cut so that the parts have equal numbers
- * of events in a unit of time. */
+ * The cuts are across an axis, the one which leaves the fewest events to cells at the edge of a
+ * part. Parts need not have as much to do as others in each slot. What matters is that the edges
+ * are short, because they wait for each other. */
 #include "field/elastic_avi/parts.h"
 
 #include <math.h>
@@ -13,10 +14,15 @@
 /* Marks of nodes. */
 enum { NOBODY = -1, SEVERAL = -2 };
 
+typedef struct placed {
+  double place;
+  int cell;
+} placed;
+
 typedef struct survey {
   const dvi__solid_avi *avi;
   dvi__solid_parts *all;
-  int *row;    /* [active] own numbers along the curve */
+  placed *row; /* [active] cells along an axis */
   int *owner;  /* [active] */
   int *user;   /* [vertices] the part of all cells of a node, or a mark */
   int *number; /* [vertices] the number of a node in a part */
@@ -31,27 +37,23 @@ static dvi_status no_memory(const dvi__solid_avi *avi)
 
 /* ---- cuts ---- */
 
-typedef struct ranked {
-  int rank, cell;
-} ranked;
-
 static int compare(const void *first, const void *second)
 {
-  const ranked *a = first, *b = second;
-  return (a->rank > b->rank) - (a->rank < b->rank);
+  const placed *a = first, *b = second;
+  if (a->place != b->place) return a->place < b->place ? -1 : 1;
+  return (a->cell > b->cell) - (a->cell < b->cell);
 }
 
-static dvi_status find_row(const survey *s, const dvi__solid_plan *plan)
+static void put_in_row(const survey *s, int axis)
 {
-  const int64_t active = s->avi->active;
-  ranked *order = DVI_NEW(ranked, active);
-  if (order == NULL) return no_memory(s->avi);
-  for (int64_t c = 0; c < active; c++)
-    order[c] = (ranked){plan->rank[s->avi->cell[c].name], (int)c};
-  qsort(order, (size_t)active, sizeof *order, compare);
-  for (int64_t i = 0; i < active; i++) s->row[i] = order[i].cell;
-  dvi__release(order);
-  return DVI_OK;
+  const dvi__solid_avi *avi = s->avi;
+  for (int64_t c = 0; c < avi->active; c++) {
+    double sum = 0;
+    for (int a = 0; a <= avi->n; a++)
+      sum += avi->solid->point[(int64_t)avi->cell[c].corner[a] * avi->n + axis];
+    s->row[c] = (placed){sum, (int)c};
+  }
+  qsort(s->row, (size_t)avi->active, sizeof *s->row, compare);
 }
 
 /* Cut the row. Every part gets a cell. */
@@ -70,10 +72,54 @@ static void cut(const survey *s)
       part++;
       taken = 0;
     }
-    s->owner[s->row[i]] = part;
-    sum += 1 / avi->step[s->row[i]];
+    s->owner[s->row[i].cell] = part;
+    sum += 1 / avi->step[s->row[i].cell];
     taken++;
   }
+}
+
+static void find_users(const survey *s)
+{
+  const dvi__solid_avi *avi = s->avi;
+  for (int64_t v = 0; v < avi->vertices; v++) s->user[v] = s->seen[v] = NOBODY;
+  for (int64_t c = 0; c < avi->active; c++)
+    for (int a = 0; a <= avi->n; a++) {
+      int *user = s->user + avi->cell[c].corner[a];
+      if (*user == NOBODY) *user = s->owner[c];
+      if (*user != s->owner[c]) *user = SEVERAL;
+    }
+}
+
+static int is_at_edge(const survey *s, int64_t c)
+{
+  for (int a = 0; a <= s->avi->n; a++)
+    if (s->user[s->avi->cell[c].corner[a]] == SEVERAL) return 1;
+  return 0;
+}
+
+/* Cut across an axis. Returns the events of cells at the edges in a unit of time. */
+static double cut_across(const survey *s, int axis)
+{
+  double events = 0;
+  put_in_row(s, axis);
+  cut(s);
+  find_users(s);
+  for (int64_t c = 0; c < s->avi->active; c++)
+    if (is_at_edge(s, c)) events += 1 / s->avi->step[c];
+  return events;
+}
+
+/* Find the owners of cells and the users of nodes. */
+static void share_out(const survey *s)
+{
+  double least = INFINITY;
+  int best = 0;
+  for (int axis = 0; axis < s->avi->n; axis++) {
+    const double events = cut_across(s, axis);
+    if (events < least) best = axis;
+    least = fmin(least, events);
+  }
+  (void)cut_across(s, best);
 }
 
 /* ---- cells and nodes of parts ---- */
@@ -92,18 +138,6 @@ static void list_cells(const survey *s)
       p->class_end[j] = p->count = begin - p->cell;
     }
   }
-}
-
-static void find_users(const survey *s)
-{
-  const dvi__solid_avi *avi = s->avi;
-  for (int64_t v = 0; v < avi->vertices; v++) s->user[v] = s->seen[v] = NOBODY;
-  for (int64_t c = 0; c < avi->active; c++)
-    for (int a = 0; a <= avi->n; a++) {
-      int *user = s->user + avi->cell[c].corner[a];
-      if (*user == NOBODY) *user = s->owner[c];
-      if (*user != s->owner[c]) *user = SEVERAL;
-    }
 }
 
 /* Number the nodes of the edge of a part, or the others. */
@@ -205,16 +239,14 @@ void dvi__solid_parts_destroy(dvi__solid_parts **parts)
   *parts = NULL;
 }
 
-static dvi_status fill(const survey *s, const dvi__solid_plan *plan)
+static dvi_status fill(const survey *s)
 {
   const int count = s->all->count;
-  DVI_TRY(find_row(s, plan));
-  cut(s);
+  if (count > 1) share_out(s);
   list_cells(s);
   for (int k = 0; k < count && s->avi->is_free; k++)
     DVI_TRY(make_calendar(s->avi, s->all->part + k));
   if (count == 1) return DVI_OK;
-  find_users(s);
   for (int k = 0; k < count; k++) DVI_TRY(make_edge(s, k));
   return dvi__team_create(count, &s->all->team);
 }
@@ -234,7 +266,7 @@ static dvi_status allocate(const survey *s)
              : no_memory(avi);
 }
 
-dvi_status dvi__solid_parts_create(const dvi__solid_plan *plan, dvi__solid_avi *avi)
+dvi_status dvi__solid_parts_create(dvi__solid_avi *avi)
 {
   const int64_t active = avi->active, vertices = avi->vertices;
   dvi__solid_parts *all = avi->parts = DVI_NEW(dvi__solid_parts, 1);
@@ -242,13 +274,13 @@ dvi_status dvi__solid_parts_create(const dvi__solid_plan *plan, dvi__solid_avi *
   all->count = (int)(avi->threads < active ? avi->threads : active);
   const survey s = {.avi = avi,
                     .all = all,
-                    .row = DVI_NEW(int, active),
+                    .row = DVI_NEW(placed, active),
                     .owner = DVI_NEW(int, active),
                     .user = DVI_NEW(int, vertices),
                     .number = DVI_NEW(int, vertices),
                     .seen = DVI_NEW(int, vertices)};
   dvi_status status = allocate(&s);
-  if (status == DVI_OK) status = fill(&s, plan);
+  if (status == DVI_OK) status = fill(&s);
   dvi__release(s.row);
   dvi__release(s.owner);
   dvi__release(s.user);

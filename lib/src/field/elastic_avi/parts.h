@@ -40,7 +40,7 @@ typedef struct dvi__solid_parts {
 } dvi__solid_parts;
 
 /* Make avi->parts, one a thread. On failure nothing is owned. */
-dvi_status dvi__solid_parts_create(const dvi__solid_plan *plan, dvi__solid_avi *avi);
+dvi_status dvi__solid_parts_create(dvi__solid_avi *avi);
 void dvi__solid_parts_destroy(dvi__solid_parts **parts);
 
 #endif

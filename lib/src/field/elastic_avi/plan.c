@@ -13,14 +13,10 @@
 #include "field/elastic_avi/plan.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "field/mesh/curve.h"
 #include "march/kind.h"
-
-enum { PLACE_BITS = 60 };
 
 static const double rounding = 1e-12;
 
@@ -29,14 +25,7 @@ void dvi__solid_plan_clear(dvi__solid_plan *plan)
   dvi__release(plan->bound);
   dvi__release(plan->step);
   dvi__release(plan->class);
-  dvi__release(plan->rank);
   *plan = (dvi__solid_plan){0};
-}
-
-static dvi_status no_memory(const dvi_elastic *e)
-{
-  return dvi__fail(DVI_NO_MEMORY, "avi: no memory for the steps of %lld cells",
-                   (long long)e->cells);
 }
 
 static double bound_of(double omega, double beta)
@@ -119,51 +108,6 @@ static void choose_free(const dvi_elastic *e, double fraction, double span, dvi_
     if (isfinite(plan->bound[c])) plan->step[c] = dvi__fit_step(fraction * plan->bound[c], span);
 }
 
-typedef struct placed {
-  uint64_t place;
-  int cell;
-} placed;
-
-static int compare(const void *first, const void *second)
-{
-  const placed *a = first, *b = second;
-  if (a->place != b->place) return a->place < b->place ? -1 : 1;
-  return (a->cell > b->cell) - (a->cell < b->cell);
-}
-
-/* Give the place of a cell's centre in the cube about the solid. */
-static uint64_t place_of(const dvi_elastic *e, int64_t cell, const double *middle, double half)
-{
-  const int n = e->n, *vertex = e->vertex + cell * (n + 1);
-  double x[DVI__SOLID_AXES] = {0};
-  for (int a = 0; a <= n; a++)
-    for (int i = 0; i < n; i++)
-      x[i] += (e->point[(int64_t)vertex[a] * n + i] - middle[i]) / ((n + 1) * half);
-  return dvi__place_on_curve(n, PLACE_BITS / n, x);
-}
-
-/* Rank the cells along Hilbert's curve. */
-static dvi_status rank_cells(const dvi_elastic *e, dvi__solid_plan *plan)
-{
-  double middle[DVI__SOLID_AXES], half = 0;
-  placed *order = DVI_NEW(placed, e->cells);
-  if (order == NULL) return no_memory(e);
-  for (int i = 0; i < e->n; i++) {
-    double low = INFINITY, high = -INFINITY;
-    for (int64_t v = 0; v < e->vertices; v++) {
-      low = fmin(low, e->point[v * e->n + i]);
-      high = fmax(high, e->point[v * e->n + i]);
-    }
-    middle[i] = low + (high - low) / 2;
-    half = fmax(half, (high - low) / 2);
-  }
-  for (int64_t c = 0; c < e->cells; c++) order[c] = (placed){place_of(e, c, middle, half), (int)c};
-  qsort(order, (size_t)e->cells, sizeof *order, compare);
-  for (int64_t i = 0; i < e->cells; i++) plan->rank[order[i].cell] = (int)i;
-  dvi__release(order);
-  return DVI_OK;
-}
-
 static dvi_status choose(const dvi_elastic *e, const dvi__solid_request *request,
                          dvi__solid_plan *plan)
 {
@@ -174,7 +118,6 @@ static dvi_status choose(const dvi_elastic *e, const dvi__solid_request *request
   if (request->is_equal) DVI_TRY(find_common_bound(e, plan));
   DVI_TRY(find_fraction(e, request, plan, &fraction));
   (request->is_free ? choose_free : choose_classes)(e, fraction, span, plan);
-  DVI_TRY(rank_cells(e, plan));
   plan->shortest = INFINITY;
   for (int64_t c = 0; c < e->cells; c++) {
     plan->shortest = fmin(plan->shortest, plan->step[c]);
@@ -188,11 +131,13 @@ dvi_status dvi__solid_plan_make(const dvi_elastic *solid, const dvi__solid_reque
 {
   *plan = (dvi__solid_plan){.bound = DVI_NEW(double, solid->cells),
                             .step = DVI_NEW(double, solid->cells),
-                            .class = DVI_NEW(int, solid->cells),
-                            .rank = DVI_NEW(int, solid->cells)};
-  const dvi_status status = plan->bound && plan->step && plan->class && plan->rank
-                                ? choose(solid, request, plan)
-                                : no_memory(solid);
+                            .class = DVI_NEW(int, solid->cells)};
+  const dvi_status status =
+      plan->bound && plan->step && plan->class ? choose(solid, request, plan)
+                                               : dvi__fail(
+                                                     DVI_NO_MEMORY,
+                                                     "avi: no memory for the steps of %lld cells",
+                                                     (long long)solid->cells);
   if (status != DVI_OK) dvi__solid_plan_clear(plan);
   return status;
 }

@@ -18,7 +18,6 @@ typedef struct dvi__solid_plan {
   double *bound; /* [cells] longest stable step of a cell by itself. Infinite without events */
   double *step;  /* [cells] infinite without events */
   int *class;    /* [cells] log2 of the step beside the shortest one. 0 for free steps */
-  int *rank;     /* [cells] on a curve through the solid, near for neighbours */
   int classes;
   double shortest, longest, tightest; /* steps, and the least bound */
   int64_t tightest_cell;

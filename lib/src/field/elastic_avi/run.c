@@ -19,8 +19,7 @@ dvi__solid_halt dvi__solid_run_slots(dvi__solid_avi *avi, double limit)
     if (!(t <= limit)) return (dvi__solid_halt){0};
     const int64_t end = avi->class_end[dvi__solid_class_of_slot(avi, avi->clock.slot + 1)];
     for (int64_t c = 0; c < end; c++) {
-      __builtin_prefetch(avi->cell + c + 10, 0);
-      __builtin_prefetch(&avi->cell[c + 10].gradient[4], 0);
+      if (c + DVI__CELL_AHEAD < end) DVI__FETCH_CELL(avi->cell + c + DVI__CELL_AHEAD);
       const int returned = dvi__solid_act(avi, c, t);
       if (returned != 0) return (dvi__solid_halt){returned, c, t};
     }

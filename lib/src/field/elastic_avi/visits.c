@@ -25,8 +25,8 @@
 
 #include "field/elastic_avi/parts.h"
 
-/* A visit ends when this many more events were put off than happened. */
-enum { PATIENCE = 256 };
+/* A visit ends when this many more events were put off than happened of late. */
+enum { PATIENCE = 16 };
 
 typedef struct run {
   dvi__solid_avi *avi;
@@ -60,26 +60,33 @@ static int find_next(const run *r, dvi__solid_part *p, dvi__part_event *event)
   return 1;
 }
 
-/* A macro, because compilers take functions that only fetch for ones that do nothing. */
-#define FETCH(place) __builtin_prefetch(place, 1)
+static void take_slot(const dvi__solid_avi *avi, dvi__solid_part *p)
+{
+  p->next++;
+  if (p->next + DVI__CELL_AHEAD < p->count)
+    DVI__FETCH_CELL(avi->cell + p->cell[p->next + DVI__CELL_AHEAD]);
+}
+
+/* Take the next event, and fetch cells and nodes of later ones. */
+static void take_free(const dvi__solid_avi *avi, dvi__calendar *calendar)
+{
+  dvi__calendar_take(calendar);
+  const dvi__calendar_event *far = dvi__calendar_ahead(calendar, DVI__CELL_AHEAD),
+                            *near = dvi__calendar_ahead(calendar, DVI__NODES_AHEAD);
+  if (far != NULL) {
+    DVI__FETCH_CELL(avi->cell + far->number);
+    DVI__FETCH(avi->state.count + far->number);
+  }
+  for (int a = 0; a <= avi->n && near != NULL; a++)
+    DVI__FETCH(avi->state.node + avi->cell[near->number].corner[a]);
+}
 
 static void take_next(const run *r, dvi__solid_part *p)
 {
-  const dvi__solid_avi *avi = r->avi;
-  if (!avi->is_free) {
-    p->next++;
-    return;
-  }
-  dvi__calendar_take(p->calendar);
-  const dvi__calendar_event *far = dvi__calendar_ahead(p->calendar, DVI__CELL_AHEAD),
-                            *near = dvi__calendar_ahead(p->calendar, DVI__NODES_AHEAD);
-  if (far != NULL) {
-    FETCH(avi->cell + far->number);
-    FETCH(&avi->cell[far->number].gradient[4]);
-    FETCH(avi->state.count + far->number);
-  }
-  for (int a = 0; a <= avi->n && near != NULL; a++)
-    FETCH(avi->state.node + avi->cell[near->number].corner[a]);
+  if (r->avi->is_free)
+    take_free(r->avi, p->calendar);
+  else
+    take_slot(r->avi, p);
 }
 
 /* ---- holds ---- */
@@ -202,7 +209,7 @@ static int visit(const run *r, dvi__solid_part *p)
       balance--;
     } else {
       if (!act(r, p, event)) return 0;
-      balance++;
+      if (balance < PATIENCE) balance++;
     }
   }
   keep_lates(p, first, kept);
