@@ -24,8 +24,8 @@
 enum {
   DVI__SOLID_CLASSES = 31, /* steps are at most 2^30 times the shortest one */
   DVI__SOLID_AXES = 3,
-  DVI__CELL_AHEAD = 12, /* events in advance when a cell is fetched, and its nodes */
-  DVI__NODES_AHEAD = 6
+  DVI__CELL_AHEAD = 24, /* events in advance when a cell is fetched, and its nodes */
+  DVI__NODES_AHEAD = 10
 };
 
 /* A node, in a line of the cache. In a plane the third components are 0. */
