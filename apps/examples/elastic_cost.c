@@ -117,7 +117,7 @@ static double *rates_of_cube(const dvi_elastic *elastic)
   return rate;
 }
 
-/* Set ns to the time of an event, and rate to the number of events in the time of a longest step. */
+/* Set ns to the time of an event, and rate to the number of events in a longest step. */
 static void measure_events(const dvi_elastic *elastic, const char *method, long events, double *ns,
                            double *rate)
 {

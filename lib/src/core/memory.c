@@ -20,7 +20,7 @@ static int allocation_may_succeed(void)
  * numbers straddle cache lines. */
 enum { LINE = 64 };
 
-/* Ask for huge pages for large memory, in which random places would cost a walk of the page table. */
+/* Ask for huge pages for large memory, where random places cost walks of the page table. */
 enum { HUGE_PAGE = 1 << 21 };
 
 static void *allocate_aligned(size_t bytes)

@@ -11,7 +11,8 @@
 
 /* ---- forces ---- */
 
-/* Give -V P g_a with the gradients of the nodes but the first one. n is a constant where this is called. */
+/* Give -V P g_a with the gradients of the nodes but the first one. n is a constant where this is
+ * called. */
 static inline void pull(int n, double volume, const double *g, const double *P, double *f)
 {
   for (int i = 0; i < n; i++) {

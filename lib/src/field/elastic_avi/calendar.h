@@ -56,8 +56,8 @@ void dvi__calendar_put(dvi__calendar *calendar, double t, int64_t number);
 /* Return the next event, or NULL if there is none. */
 const dvi__calendar_event *dvi__calendar_next(dvi__calendar *calendar);
 
-/* Return a later event, after dvi__calendar_next, or NULL if there is none. Puts may change which it
- * is. */
+/* Return a later event, after dvi__calendar_next, or NULL if there is none. Puts may bring others
+ * before it. */
 static inline const dvi__calendar_event *dvi__calendar_ahead(const dvi__calendar *calendar,
                                                              int skipped)
 {

@@ -127,8 +127,8 @@ typedef struct dvi__solid_avi {
   dvi__solid_view *view;
 } dvi__solid_avi;
 
-/* Fetch a cell before it is needed. Macros, because compilers take functions that only fetch for ones
- * that do nothing. */
+/* Fetch a cell before it is needed. These are macros, because compilers take functions that only
+ * fetch for ones that do nothing. */
 #define DVI__FETCH(place) __builtin_prefetch(place, 1)
 #define DVI__FETCH_CELL(cell) (DVI__FETCH(cell), DVI__FETCH(&(cell)->gradient[4]))
 

@@ -16,11 +16,11 @@ typedef struct dvi__solid_part {
   const int *cell;                       /* [count] own numbers, ascending */
   int64_t class_end[DVI__SOLID_CLASSES]; /* in `cell` */
   dvi__calendar *calendar;               /* of free steps */
-  int64_t slot, next;            /* of classes: the slot to go on in, and a place in `cell` */
-  int64_t nodes, edge;           /* nodes, and the first of them, that others have, too */
-  dvi__part_event *hold;         /* [nodes] */
-  int64_t *foreign_start;        /* [edge+1] */
-  int *foreign;                  /* own numbers of the cells of others */
+  int64_t slot, next, due; /* of classes: the slot to go on in, a place in `cell`, and the end */
+  int64_t nodes, edge;     /* nodes, and the first of them, that others have, too */
+  dvi__part_event *hold;   /* [nodes] */
+  int64_t *foreign_start;  /* [edge+1] */
+  int *foreign;            /* own numbers of the cells of others */
   dvi__part_event *late, *later; /* [room] events that were put off, in their order */
   int64_t room, lates;
   /* What a run did. Only the member writes here. */

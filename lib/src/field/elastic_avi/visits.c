@@ -1,8 +1,9 @@
 /* Events part by part, on one or several threads, with the bits of the order by time.
  *
- * The bits are those of this order if each node gets its kicks in it. So an event may happen as soon
- * as no earlier one of a cell with a common node is left, and independent ones in any order (Kale
- * and Lew 2007). Every member visits its part of the cells over and over, and there is no barrier.
+ * The bits are those of this order if each node gets its kicks in it. So an event may happen as
+ * soon as no earlier one of a cell with a common node is left, and independent ones in any order
+ * (Kale and Lew 2007). Every member visits its part of the cells over and over, and there is no
+ * barrier.
  *
  * In a visit it takes events in the order of their times, and puts off those that have to wait: for
  * a cell of another part, or for an event that was put off before. To know this, each node of the
@@ -41,6 +42,13 @@ static int is_before(dvi__part_event a, dvi__part_event b)
 
 /* ---- the events of a part in their order ---- */
 
+static void open_slot(const dvi__solid_avi *avi, dvi__solid_part *p, int64_t slot)
+{
+  p->slot = slot;
+  p->next = 0;
+  p->due = p->class_end[dvi__solid_class_of_slot(avi, slot)];
+}
+
 /* Give the next event that was never put off. Returns 0 if there is none up to the end. */
 static int find_next(const run *r, dvi__solid_part *p, dvi__part_event *event)
 {
@@ -50,11 +58,7 @@ static int find_next(const run *r, dvi__solid_part *p, dvi__part_event *event)
     *event = (dvi__part_event){first->t, first->number};
     return 1;
   }
-  while ((double)p->slot <= r->end &&
-         p->next == p->class_end[dvi__solid_class_of_slot(r->avi, p->slot)]) {
-    p->slot++;
-    p->next = 0;
-  }
+  while ((double)p->slot <= r->end && p->next == p->due) open_slot(r->avi, p, p->slot + 1);
   if (!((double)p->slot <= r->end)) return 0;
   *event = (dvi__part_event){(double)p->slot, p->cell[p->next]};
   return 1;
@@ -63,7 +67,7 @@ static int find_next(const run *r, dvi__solid_part *p, dvi__part_event *event)
 static void take_slot(const dvi__solid_avi *avi, dvi__solid_part *p)
 {
   p->next++;
-  if (p->next + DVI__CELL_AHEAD < p->count)
+  if (p->next + DVI__CELL_AHEAD < p->due)
     DVI__FETCH_CELL(avi->cell + p->cell[p->next + DVI__CELL_AHEAD]);
 }
 
@@ -268,8 +272,8 @@ static void order_part(const dvi__solid_avi *avi, dvi__solid_part *p)
   double first = INFINITY;
   for (int64_t a = 0; a < p->nodes; a++) p->hold[a] = (dvi__part_event){.at = INFINITY};
   for (int64_t i = 0; i < p->count; i++) publish(avi, p->cell[i], next_of(avi, p->cell[i]));
-  p->lates = p->next = 0;
-  p->slot = avi->clock.slot + 1;
+  p->lates = 0;
+  open_slot(avi, p, avi->clock.slot + 1);
   if (!avi->is_free) return;
   for (int64_t i = 0; i < p->count; i++) first = fmin(first, next_of(avi, p->cell[i]));
   dvi__calendar_clear(p->calendar, first);
