@@ -7,14 +7,14 @@
  *
  * In a visit it takes events in the order of their times, and puts off those that have to wait: for
  * a cell of another part, or for an event that was put off before. To know this, each node of the
- * part has a hold, the first event there that has not happened and cannot in this visit. At the
- * edge, the holds of foreign cells are found once a visit. An event is put off if a hold of its
- * nodes is earlier, and then holds its other nodes. A visit ends when too many were put off.
+ * part has a hold, the first event there that has not happened and cannot in this visit. At nodes
+ * of the edge, those of foreign cells are found at most once a visit. An event is put off if a hold
+ * of its nodes is earlier, and then holds its other nodes. A visit ends when too many were put off.
  *
  * A cell publishes its next event (release) after the present one has happened, and others look at
- * it (acquire) before they touch a common node. Next events only become later, so that the holds
- * that were found at the begin of a visit are safe. Nobody waits forever: the first of all events
- * that are left is the first one of its part, and no node holds it.
+ * it (acquire) before they touch a common node. Next events only become later, so that a hold stays
+ * safe. Nobody waits forever: the first of all events that are left is the first one of its part,
+ * and no node holds it.
  *
  * An event that fails is never followed by another one of its cell. All members end when they see
  * the sign that it leaves. Then what is stored is of no single time.
@@ -109,29 +109,41 @@ static dvi__part_event first_foreign(const dvi__solid_parts *all, const dvi__sol
   return first;
 }
 
-/* Set the holds of foreign cells, and forget those of the events that were put off. */
-static void look_around(const dvi__solid_avi *avi, dvi__solid_part *p)
+/* The hold of a node. That of foreign cells is found when it is asked for the first time in a
+ * visit. */
+static dvi__part_event *hold_of(const dvi__solid_avi *avi, const dvi__solid_part *p, int node)
+{
+  if (node < p->edge && p->seen[node] != p->visits) {
+    p->seen[node] = p->visits;
+    p->hold[node] = first_foreign(avi->parts, p, node);
+  }
+  return p->hold + node;
+}
+
+/* Forget the holds of the events that were put off before. */
+static void release(const dvi__solid_avi *avi, const dvi__solid_part *p)
 {
   const int width = avi->n + 1;
   for (int64_t i = 0; i < p->lates; i++)
     for (int a = 0; a < width; a++)
       p->hold[avi->parts->corner[p->late[i].cell * width + a]].at = INFINITY;
-  for (int64_t node = 0; node < p->edge; node++) p->hold[node] = first_foreign(avi->parts, p, node);
 }
 
 static int is_held(const dvi__solid_avi *avi, const dvi__solid_part *p, dvi__part_event event)
 {
   const int *corner = avi->parts->corner + event.cell * (avi->n + 1);
   for (int a = 0; a <= avi->n; a++)
-    if (is_before(p->hold[corner[a]], event)) return 1;
+    if (is_before(*hold_of(avi, p, corner[a]), event)) return 1;
   return 0;
 }
 
 static void put_off(const dvi__solid_avi *avi, const dvi__solid_part *p, dvi__part_event event)
 {
   const int *corner = avi->parts->corner + event.cell * (avi->n + 1);
-  for (int a = 0; a <= avi->n; a++)
-    if (is_before(event, p->hold[corner[a]])) p->hold[corner[a]] = event;
+  for (int a = 0; a <= avi->n; a++) {
+    dvi__part_event *hold = hold_of(avi, p, corner[a]);
+    if (is_before(event, *hold)) *hold = event;
+  }
 }
 
 /* ---- visits ---- */
@@ -203,8 +215,8 @@ static int visit(const run *r, dvi__solid_part *p)
 {
   int64_t first = 0, kept = 0;
   dvi__part_event event;
-  look_around(r->avi, p);
   p->visits++;
+  release(r->avi, p);
   for (int64_t balance = PATIENCE; balance > 0 && take(r, p, &first, kept, &event);) {
     if (is_held(r->avi, p, event)) {
       put_off(r->avi, p, event);
