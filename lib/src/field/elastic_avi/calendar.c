@@ -105,7 +105,7 @@ static int64_t end_of_run(int64_t first, int64_t count, const dvi__calendar_even
 }
 
 /* Merge runs of the events from `start` on two by two until there is one. Cells of equal steps act
- * in a row, again and again, so that their events are put in the order in which they will happen. */
+ * in a row, again and again, so that their events are put in the order of their times. */
 static void sort(dvi__calendar *c, int64_t start)
 {
   dvi__calendar_event *event = c->event, *merged = c->merged;

@@ -253,7 +253,8 @@ static dvi_status fill(const survey *s)
   return dvi__team_create(count, &s->all->team);
 }
 
-static dvi_status allocate(const survey *s)
+/* Returns 0 without memory. */
+static int allocate(const survey *s)
 {
   const dvi__solid_avi *avi = s->avi;
   dvi__solid_parts *all = s->all;
@@ -263,9 +264,7 @@ static dvi_status allocate(const survey *s)
   all->corner = DVI_NEW(int, shared *(avi->n + 1));
   all->after = DVI_NEW(_Atomic double, shared);
   return all->part && all->cell && all->corner && all->after && s->row && s->owner && s->user &&
-                 s->number && s->seen
-             ? DVI_OK
-             : no_memory(avi);
+         s->number && s->seen;
 }
 
 dvi_status dvi__solid_parts_create(dvi__solid_avi *avi)
@@ -281,8 +280,7 @@ dvi_status dvi__solid_parts_create(dvi__solid_avi *avi)
                     .user = DVI_NEW(int, vertices),
                     .number = DVI_NEW(int, vertices),
                     .seen = DVI_NEW(int, vertices)};
-  dvi_status status = allocate(&s);
-  if (status == DVI_OK) status = fill(&s);
+  const dvi_status status = allocate(&s) ? fill(&s) : no_memory(avi);
   dvi__release(s.row);
   dvi__release(s.owner);
   dvi__release(s.user);
