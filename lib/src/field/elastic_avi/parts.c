@@ -192,13 +192,11 @@ static dvi_status make_edge(const survey *s, int k)
   number_nodes(s, k, 1);
   number_nodes(s, k, 0);
   p->room = 2 * p->count;
-  p->hold = DVI_NEW(dvi__part_event, p->nodes);
+  p->hold = DVI_NEW(dvi__part_hold, p->nodes);
   p->late = DVI_NEW(dvi__part_event, p->room);
   p->later = DVI_NEW(dvi__part_event, p->room);
   p->foreign_start = DVI_NEW(int64_t, p->edge + 1);
-  p->seen = DVI_NEW(int64_t, p->edge);
-  if (!p->seen || !p->hold || !p->late || !p->later || !p->foreign_start) return no_memory(s->avi);
-  for (int64_t a = 0; a < p->nodes; a++) p->hold[a] = (dvi__part_event){.at = INFINITY};
+  if (!p->hold || !p->late || !p->later || !p->foreign_start) return no_memory(s->avi);
   list_foreign(s, k);
   p->foreign = DVI_NEW(int, p->foreign_start[p->edge]);
   if (p->foreign == NULL) return no_memory(s->avi);
@@ -227,7 +225,6 @@ void dvi__solid_parts_destroy(dvi__solid_parts **parts)
     dvi__solid_part *p = all->part + k;
     dvi__calendar_destroy(&p->calendar);
     dvi__release(p->hold);
-    dvi__release(p->seen);
     dvi__release(p->foreign_start);
     dvi__release(p->foreign);
     dvi__release(p->late);

@@ -11,6 +11,12 @@ typedef struct dvi__part_event {
   int64_t cell;
 } dvi__part_event;
 
+/* The first event of a node that has not happened and cannot in a visit. */
+typedef struct dvi__part_hold {
+  dvi__part_event first; /* infinite for none */
+  int64_t visit;         /* the last one in which it was found */
+} dvi__part_hold;
+
 typedef struct dvi__solid_part {
   int64_t count;                         /* of cells */
   const int *cell;                       /* [count] own numbers, ascending */
@@ -18,8 +24,7 @@ typedef struct dvi__solid_part {
   dvi__calendar *calendar;               /* of free steps */
   int64_t slot, next, due; /* of classes: the slot to go on in, a place in `cell`, and the end */
   int64_t nodes, edge;     /* nodes, and the first of them, that others have, too */
-  dvi__part_event *hold;   /* [nodes] */
-  int64_t *seen;           /* [edge] the last visit in which the hold was found */
+  dvi__part_hold *hold;    /* [nodes] */
   int64_t *foreign_start;  /* [edge+1] */
   int *foreign;            /* own numbers of the cells of others */
   dvi__part_event *late, *later; /* [room] events that were put off, in their order */

@@ -109,24 +109,17 @@ static dvi__part_event first_foreign(const dvi__solid_parts *all, const dvi__sol
   return first;
 }
 
-/* The hold of a node. That of foreign cells is found when it is asked for the first time in a
- * visit. */
+/* The hold of a node. It is found when it is asked for the first time in a visit: that of foreign
+ * cells at the edge, and else none. */
 static dvi__part_event *hold_of(const dvi__solid_avi *avi, const dvi__solid_part *p, int node)
 {
-  if (node < p->edge && p->seen[node] != p->visits) {
-    p->seen[node] = p->visits;
-    p->hold[node] = first_foreign(avi->parts, p, node);
+  dvi__part_hold *hold = p->hold + node;
+  if (hold->visit != p->visits) {
+    hold->first = node < p->edge ? first_foreign(avi->parts, p, node)
+                                 : (dvi__part_event){.at = INFINITY};
+    hold->visit = p->visits;
   }
-  return p->hold + node;
-}
-
-/* Forget the holds of the events that were put off before. */
-static void release(const dvi__solid_avi *avi, const dvi__solid_part *p)
-{
-  const int width = avi->n + 1;
-  for (int64_t i = 0; i < p->lates; i++)
-    for (int a = 0; a < width; a++)
-      p->hold[avi->parts->corner[p->late[i].cell * width + a]].at = INFINITY;
+  return &hold->first;
 }
 
 static int is_held(const dvi__solid_avi *avi, const dvi__solid_part *p, dvi__part_event event)
@@ -216,7 +209,6 @@ static int visit(const run *r, dvi__solid_part *p)
   int64_t first = 0, kept = 0;
   dvi__part_event event;
   p->visits++;
-  release(r->avi, p);
   for (int64_t balance = PATIENCE; balance > 0 && take(r, p, &first, kept, &event);) {
     if (is_held(r->avi, p, event)) {
       put_off(r->avi, p, event);
@@ -246,8 +238,8 @@ static void await_foreign(const run *r, const dvi__solid_part *p)
   const dvi__part_event first = p->late[0];
   const int *corner = all->corner + first.cell * (r->avi->n + 1);
   int a = 0;
-  while (a < r->avi->n && !is_before(p->hold[corner[a]], first)) a++;
-  const dvi__part_event hold = p->hold[corner[a]];
+  while (a < r->avi->n && !is_before(p->hold[corner[a]].first, first)) a++;
+  const dvi__part_event hold = p->hold[corner[a]].first;
   for (int waited = 0;
        atomic_load_explicit(&all->after[hold.cell], memory_order_acquire) <= hold.at; waited++) {
     if (atomic_load_explicit(&r->is_stopped, memory_order_relaxed)) return;
@@ -282,7 +274,6 @@ static double next_of(const dvi__solid_avi *avi, int64_t c)
 static void order_part(const dvi__solid_avi *avi, dvi__solid_part *p)
 {
   double first = INFINITY;
-  for (int64_t a = 0; a < p->nodes; a++) p->hold[a] = (dvi__part_event){.at = INFINITY};
   for (int64_t i = 0; i < p->count; i++) publish(avi, p->cell[i], next_of(avi, p->cell[i]));
   p->lates = 0;
   open_slot(avi, p, avi->clock.slot + 1);
