@@ -137,33 +137,6 @@ START_TEST(a_saved_march_goes_on_with_the_same_bits)
 }
 END_TEST
 
-static void run_request(const dvi_elastic *solid, const dvi__solid_request *request, double t,
-                        double *u)
-{
-  dvi__solid_avi *avi;
-  double rate[NUMBERS_MOST];
-  spin_block(solid, 1, rate);
-  ck_assert_msg(dvi__solid_avi_create(solid, request, &avi) == DVI_OK, "%s", dvi_last_error());
-  ck_assert_msg(dvi__solid_avi_start(avi, 0, NULL, rate) == DVI_OK, "%s", dvi_last_error());
-  ck_assert_msg(dvi__solid_avi_advance(avi, t) == DVI_OK, "%s", dvi_last_error());
-  ck_assert(dvi__solid_avi_sample(avi, 0, NULL, u, NULL) == DVI_OK);
-  ck_assert(dvi__solid_avi_sample(avi, 0, NULL, NULL, u + NUMBERS_MOST) == DVI_OK);
-  dvi__solid_avi_destroy(&avi);
-}
-
-START_TEST(classes_have_the_bits_of_the_calendar)
-{
-  static double a[2 * NUMBERS_MOST], b[2 * NUMBERS_MOST];
-  dvi_elastic *solid = block(_i ? 3 : 2, 4, 2, DVI_ELASTIC_SVK);
-  dvi__solid_request request = {.fraction = 0.6, .threads = 1};
-  run_request(solid, &request, 1.2345, a);
-  request.is_queued = 1;
-  run_request(solid, &request, 1.2345, b);
-  ck_assert_mem_eq(a, b, sizeof a);
-  dvi_elastic_destroy(&solid);
-}
-END_TEST
-
 /* ---- energy ---- */
 
 /* Give the largest swing of the energy about its start. */
@@ -387,7 +360,6 @@ SUITE(elastic_avi)
   tcase_add_loop_test(tests, momenta_are_conserved_to_roundings, 0, METHODS);
   tcase_add_loop_test(tests, cuts_and_observations_change_no_bit, 0, METHODS);
   tcase_add_loop_test(tests, a_saved_march_goes_on_with_the_same_bits, 0, METHODS);
-  tcase_add_loop_test(tests, classes_have_the_bits_of_the_calendar, 0, 2);
   tcase_add_test(tests, the_energy_of_classes_stays_for_a_long_time);
   tcase_add_loop_test(tests, loads_conditions_and_damping_have_order_2, 0, 12);
   tcase_add_loop_test(tests, a_march_stands_before_a_cell_is_inverted, 0, METHODS);

@@ -11,14 +11,15 @@
 
 /* ---- forces ---- */
 
-/* Give -V P g_a. n is a constant where this is called. */
+/* Give -V P g_a with the gradients of the nodes but the first one. n is a constant where this is
+ * called. */
 static inline void pull(int n, double volume, const double *g, const double *P, double *f)
 {
   for (int i = 0; i < n; i++) {
     double first = 0;
     for (int a = 1; a <= n; a++) {
       double sum = 0;
-      for (int j = 0; j < n; j++) sum += P[i * n + j] * g[a * n + j];
+      for (int j = 0; j < n; j++) sum += P[i * n + j] * g[(a - 1) * n + j];
       f[a * n + i] = -volume * sum;
       first += volume * sum;
     }
@@ -27,19 +28,26 @@ static inline void pull(int n, double volume, const double *g, const double *P, 
 }
 
 /* The force with n as a constant. */
-static inline int find_force(int n, const dvi_elastic *e, int64_t cell, const double *u, double *f)
+static inline int find_force(int n, const dvi__solid_material *m, double volume, const double *g,
+                             const double *u, double *f)
 {
   double H[DVI__SOLID_ENTRIES], P[DVI__SOLID_ENTRIES];
-  const double *g = e->gradient + cell * (n + 1) * n;
   dvi__displacement_gradient(n, g, u, H);
-  const int returned = dvi__law_stress(n, e->materials + e->material[cell], H, P);
-  if (returned == 0) pull(n, e->volume[cell], g, P, f);
+  const int returned = dvi__law_stress(n, m, H, P);
+  if (returned == 0) pull(n, volume, g, P, f);
   return returned;
+}
+
+int dvi__solid_force_of(int n, const dvi__solid_material *m, double volume, const double *g,
+                        const double *u, double *f)
+{
+  return n == 3 ? find_force(3, m, volume, g, u, f) : find_force(2, m, volume, g, u, f);
 }
 
 int dvi__solid_force(const dvi_elastic *e, int64_t cell, const double *u, double *f)
 {
-  return e->n == 3 ? find_force(3, e, cell, u, f) : find_force(2, e, cell, u, f);
+  return dvi__solid_force_of(e->n, e->materials + e->material[cell], e->volume[cell],
+                             dvi__solid_gradients(e, cell), u, f);
 }
 
 /* ---- forces of several cells ---- */
@@ -63,7 +71,7 @@ static int find_given(const dvi_elastic *e, int64_t first, int count, const doub
       own[k] = P[k * count + c];
       if (!isfinite(own[k])) return 0;
     }
-    pull(n, e->volume[first + c], e->gradient + (first + c) * numbers, own, f + c * numbers);
+    pull(n, e->volume[first + c], dvi__solid_gradients(e, first + c), own, f + c * numbers);
   }
   return 1;
 }
@@ -98,8 +106,7 @@ static inline void find_rest_force(int n, const dvi_elastic *e, int64_t cell, co
                                    double *f)
 {
   double H[DVI__SOLID_ENTRIES], P[DVI__SOLID_ENTRIES];
-  const double *g = e->gradient + cell * (n + 1) * n,
-               *moduli = e->materials[e->material[cell]].rest;
+  const double *g = dvi__solid_gradients(e, cell), *moduli = e->materials[e->material[cell]].rest;
   dvi__displacement_gradient(n, g, u, H);
   for (int i = 0; i < n * n; i++) {
     P[i] = 0;
@@ -120,7 +127,7 @@ void dvi__solid_rest_force(const dvi_elastic *e, int64_t cell, const double *u, 
 
 void dvi__solid_strain(const dvi_elastic *e, int64_t cell, const double *u, double *H)
 {
-  dvi__displacement_gradient(e->n, e->gradient + cell * (e->n + 1) * e->n, u, H);
+  dvi__displacement_gradient(e->n, dvi__solid_gradients(e, cell), u, H);
 }
 
 int dvi__solid_stored(const dvi_elastic *e, int64_t cell, const double *u, double *energy)
@@ -160,7 +167,7 @@ int dvi__solid_stiffness(const dvi_elastic *e, int64_t cell, const double *u, do
   const double *g = e->gradient + cell * (n + 1) * n, *moduli = material->rest;
   if (u != NULL && material->law != DVI_ELASTIC_LINEAR) {
     double H[DVI__SOLID_ENTRIES];
-    dvi__displacement_gradient(n, g, u, H);
+    dvi__displacement_gradient(n, g + n, u, H);
     const int returned = dvi__law_hessian(n, material, H, A);
     if (returned != 0) return returned;
     moduli = A;

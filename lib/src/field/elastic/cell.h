@@ -4,8 +4,8 @@
 #include "field/elastic/laws.h"
 #include "field/mesh/mesh.h"
 
-/* Give H = grad u of displacements u [(n+1)*n], with the gradients g [(n+1)*n]. n is a constant
- * where this is called. */
+/* Give H = grad u of displacements u [(n+1)*n], with the gradients g [n*n] of the barycentric
+ * coordinates but the first one. n is a constant where this is called. */
 static inline void dvi__displacement_gradient(int n, const double *g, const double *u, double *H)
 {
   for (int i = 0; i < n; i++) {
@@ -13,11 +13,22 @@ static inline void dvi__displacement_gradient(int n, const double *g, const doub
     for (int a = 0; a < n; a++) difference[a] = u[(a + 1) * n + i] - u[i];
     for (int j = 0; j < n; j++) {
       double sum = 0;
-      for (int a = 0; a < n; a++) sum += difference[a] * g[(a + 1) * n + j];
+      for (int a = 0; a < n; a++) sum += difference[a] * g[a * n + j];
       H[i * n + j] = sum;
     }
   }
 }
+
+/* The gradients of a cell's barycentric coordinates but the first one. */
+static inline const double *dvi__solid_gradients(const dvi_elastic *e, int64_t cell)
+{
+  return e->gradient + (cell * (e->n + 1) + 1) * e->n;
+}
+
+/* Give the forces of a cell of a material, a volume, and gradients [n*n] as above. Returns as
+ * dvi__solid_force. */
+int dvi__solid_force_of(int n, const dvi__solid_material *m, double volume, const double *g,
+                        const double *u, double *f);
 
 enum { DVI__SOLID_BATCH = 32 };
 

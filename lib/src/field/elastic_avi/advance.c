@@ -16,14 +16,14 @@ static const double roundings = 4 * DBL_EPSILON;
 /* Say what stopped a run. */
 static dvi_status refuse(const dvi__solid_avi *avi, const dvi__solid_halt *halt)
 {
-  const int n = avi->n, *corner = avi->corner + halt->cell * (n + 1);
+  const int n = avi->n, *corner = avi->cell[halt->cell].corner;
   for (int a = 0; a <= n; a++) {
     double u[DVI__SOLID_AXES], rate[DVI__SOLID_AXES];
     if (!(avi->node_kind[corner[a]] & DVI__NODE_DRIVEN)) continue;
     const int returned = dvi__solid_given(avi->solid, corner[a], halt->t, u, rate);
     if (returned != 0) return dvi__solid_refuse_given(avi->solid, corner[a], returned);
   }
-  (void)dvi__solid_refuse(avi->solid, avi->name[halt->cell], halt->returned);
+  (void)dvi__solid_refuse(avi->solid, avi->cell[halt->cell].name, halt->returned);
   return halt->returned > 0 ? DVI_SINGULAR : DVI_CALLBACK_FAILED;
 }
 
@@ -33,16 +33,16 @@ static double limit_of(const dvi__solid_avi *avi, double t)
   return t + roundings * fmax(fabs(t), fabs(avi->clock.t0));
 }
 
-/* Let the events since the last look up to a limit happen again, on a single thread. */
+/* Let the events since the last look up to a limit happen again, in the order by time. */
 static dvi__solid_halt redo(dvi__solid_avi *avi, double limit)
 {
   dvi__solid_take_back(avi);
-  const dvi__solid_halt halt = dvi__solid_run(avi, limit);
+  const dvi__solid_halt halt = dvi__solid_run_in_order(avi, limit);
   dvi__solid_order(avi);
   return halt;
 }
 
-/* Stand before the first event that fails up to a limit, found by a single thread. If none fails
+/* Stand before the first event that fails up to a limit, in the order by time. If none fails
  * again, the callback that did has changed its mind, and the march stands where it was. */
 static dvi_status stand_before(dvi__solid_avi *avi, double limit, dvi__solid_halt first)
 {
@@ -59,8 +59,7 @@ static dvi_status run(dvi__solid_avi *avi, double t)
 {
   const double limit = limit_of(avi, t), before = avi->clock.t;
   avi->view->t = (double)NAN; /* events of the present time may be left after a failure */
-  const dvi__solid_halt halt = avi->members != NULL ? dvi__solid_run_members(avi, limit)
-                                                    : dvi__solid_run(avi, limit);
+  const dvi__solid_halt halt = dvi__solid_run(avi, limit);
   if (halt.returned != 0) {
     avi->clock.t = before;
     return stand_before(avi, limit, halt);

@@ -117,7 +117,7 @@ static void pull_now(const flight *f, int64_t c, int corner, double now, double 
 {
   const dvi__solid_avi *avi = f->avi;
   const int n = avi->n, numbers = (n + 1) * n;
-  const dvi__solid_push *push = avi->state.push + avi->meeting[c];
+  const dvi__solid_push *push = avi->state.push + avi->cell[c].meeting;
   double u[DVI__SOLID_NUMBERS], load[DVI__SOLID_NUMBERS];
   for (int k = 0; k < numbers; k++) u[k] = push->u[k] + push->v[k] * (now - push->t);
   for (int i = 0; i < n; i++) u[corner * n + i] = f->node->u[i];
@@ -125,7 +125,7 @@ static void pull_now(const flight *f, int64_t c, int corner, double now, double 
     memcpy(force, push->f, (size_t)numbers * sizeof *force);
     return;
   }
-  if (!(avi->cell_kind[c] & DVI__CELL_VISCOUS)) return;
+  if (!(avi->cell[c].kind & DVI__CELL_VISCOUS)) return;
   dvi__solid_resist(avi, c, push->v, load);
   for (int k = 0; k < numbers; k++) force[k] += load[k];
 }
@@ -139,15 +139,15 @@ static void gather_pushes(const flight *f, int is_hit, meeting *at)
                now = f->t + (f->decay > 0 ? -log1p(-f->decay * f->flown) / f->decay : f->flown);
   at->shortest = INFINITY;
   for (int64_t k = avi->cell_start[f->vertex]; k < avi->cell_start[f->vertex + 1]; k++) {
-    const int c = avi->cell_of[k], *corner = avi->corner + (int64_t)c * (n + 1);
-    const dvi__solid_push *push = avi->state.push + avi->meeting[c];
-    const double owed = dvi__decay_owed(f->decay, avi->step[c], now - push->t);
+    const int c = avi->cell_of[k], *corner = avi->cell[c].corner;
+    const dvi__solid_push *push = avi->state.push + avi->cell[c].meeting;
+    const double owed = dvi__decay_owed(f->decay, avi->cell[c].step, now - push->t);
     double fresh[DVI__SOLID_NUMBERS];
     int a = 0;
     while (corner[a] != f->vertex) a++;
     const double *force = push->f;
     if (is_hit) pull_now(f, c, a, now, fresh), force = fresh;
-    at->shortest = fmin(at->shortest, avi->step[c]);
+    at->shortest = fmin(at->shortest, avi->cell[c].step);
     for (int i = 0; i < n; i++) {
       const double rate = (f->given & 1 << i) ? 0 : f->node->inverse / left * force[a * n + i];
       at->debt[i] += owed * rate;
@@ -346,9 +346,9 @@ static const dvi_obstacle *go_on(flight *f, const dvi_obstacle *o, const meeting
 
 void dvi__solid_note(dvi__solid_avi *avi, int64_t c, double t, const double *u, const double *f)
 {
-  const int n = avi->n, *corner = avi->corner + c * (n + 1);
-  if (!(avi->cell_kind[c] & DVI__CELL_MEETS)) return;
-  dvi__solid_push *push = avi->state.push + avi->meeting[c];
+  const int n = avi->n, *corner = avi->cell[c].corner;
+  if (!(avi->cell[c].kind & DVI__CELL_MEETS)) return;
+  dvi__solid_push *push = avi->state.push + avi->cell[c].meeting;
   push->t = t;
   for (int k = 0; k < (n + 1) * n; k++) {
     push->u[k] = u[k];

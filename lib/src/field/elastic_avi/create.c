@@ -5,7 +5,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "field/elastic_avi/layout.h"
-#include "field/elastic_avi/members.h"
+#include "field/elastic_avi/parts.h"
 
 static void destroy_view(dvi__solid_view *view)
 {
@@ -19,13 +19,11 @@ void dvi__solid_avi_destroy(dvi__solid_avi **avi)
 {
   dvi__solid_avi *s = *avi;
   if (s == NULL) return;
-  void *const memory[] = {s->name,  s->corner, s->node_kind, s->cell_kind,
-                          s->step,  s->decay,  s->viscous,   s->meeting,
-                          s->block, s->kept,   s->cell_of,   s->cell_start};
+  void *const memory[] = {s->cell,  s->node_kind, s->step,    s->decay,
+                          s->block, s->kept,      s->cell_of, s->cell_start};
   for (size_t i = 0; i < sizeof memory / sizeof *memory; i++) dvi__release(memory[i]);
   destroy_view(s->view);
-  dvi__calendar_destroy(&s->calendar);
-  dvi__solid_members_destroy(&s->members);
+  dvi__solid_parts_destroy(&s->parts);
   dvi__release(s);
   *avi = NULL;
 }
@@ -41,31 +39,19 @@ static dvi_status allocate(dvi__solid_avi *s)
   const int64_t width = s->n + 1, numbers = s->vertices * s->n;
   int decays = 0;
   for (int i = 0; i < e->material_count; i++) decays |= e->materials[i].alpha > 0;
-  s->name = DVI_NEW(int, s->cells);
-  s->corner = DVI_NEW(int, s->cells *width);
+  s->cell = DVI_NEW(dvi__solid_cell, s->cells);
   s->node_kind = DVI_NEW(uint8_t, s->vertices);
-  s->cell_kind = DVI_NEW(uint8_t, s->cells);
   s->step = DVI_NEW(double, s->cells);
-  s->viscous = DVI_NEW(int, s->cells);
-  s->meeting = DVI_NEW(int, s->cells);
   s->cell_start = DVI_NEW(int64_t, s->vertices + 1);
   s->cell_of = DVI_NEW(int, s->cells *width);
   s->view = DVI_NEW(dvi__solid_view, 1);
-  if (!s->name || !s->corner || !s->node_kind || !s->cell_kind || !s->step || !s->viscous ||
-      !s->meeting || !s->cell_start || !s->cell_of || !s->view)
+  if (!s->cell || !s->node_kind || !s->step || !s->cell_start || !s->cell_of || !s->view)
     return no_memory(s);
   s->view->u = DVI_NEW(double, numbers);
   s->view->rate = DVI_NEW(double, numbers);
   if (!s->view->u || !s->view->rate) return no_memory(s);
   if (decays && (s->decay = DVI_NEW(double, s->vertices)) == NULL) return no_memory(s);
   return DVI_OK;
-}
-
-static dvi_status make_calendar(dvi__solid_avi *s)
-{
-  double rate = 0;
-  for (int64_t c = 0; c < s->active; c++) rate += 1 / s->step[c];
-  return dvi__calendar_create(s->active, s->longest, rate, &s->calendar);
 }
 
 dvi_status dvi__solid_avi_create(const dvi_elastic *solid, const dvi__solid_request *request,
@@ -84,7 +70,7 @@ dvi_status dvi__solid_avi_create(const dvi_elastic *solid, const dvi__solid_requ
                         .n = solid->n,
                         .vertices = solid->vertices,
                         .cells = solid->cells,
-                        .is_free = request->is_free || request->is_queued,
+                        .is_free = request->is_free,
                         .is_equal = request->is_equal,
                         .is_linear = request->is_linear,
                         .classes = plan.classes,
@@ -95,8 +81,7 @@ dvi_status dvi__solid_avi_create(const dvi_elastic *solid, const dvi__solid_requ
                         .threads = request->threads};
   dvi_status status = allocate(s);
   if (status == DVI_OK) status = dvi__solid_lay_out(&plan, s);
-  if (status == DVI_OK && s->is_free) status = make_calendar(s);
-  if (status == DVI_OK && s->threads > 1) status = dvi__solid_members_create(s);
+  if (status == DVI_OK && (s->is_free || s->threads > 1)) status = dvi__solid_parts_create(s);
   dvi__solid_plan_clear(&plan);
   if (status == DVI_OK)
     *avi = s;

@@ -19,12 +19,13 @@
 #ifndef DVI_FIELD_ELASTIC_AVI_ENGINE_H
 #define DVI_FIELD_ELASTIC_AVI_ENGINE_H
 #include "field/elastic/cell.h"
-#include "field/elastic_avi/calendar.h"
 #include "march/sections.h"
 
 enum {
   DVI__SOLID_CLASSES = 31, /* steps are at most 2^30 times the shortest one */
-  DVI__SOLID_AXES = 3
+  DVI__SOLID_AXES = 3,
+  DVI__CELL_AHEAD = 24, /* events in advance when a cell is fetched, and its nodes */
+  DVI__NODES_AHEAD = 10
 };
 
 /* A node, in a line of the cache. In a plane the third components are 0. */
@@ -33,6 +34,17 @@ typedef struct dvi__solid_node {
   double tau;
   double inverse; /* 1/m */
 } dvi__solid_node;
+
+/* A cell, in two lines of the cache. */
+typedef struct dvi__solid_cell {
+  int corner[DVI__SOLID_NODES];
+  double step, volume;
+  double gradient[DVI__SOLID_ENTRIES]; /* [n*n] of the barycentric coordinates but the first one */
+  int name;                            /* the mesh's number */
+  int material, kind;
+  int viscous; /* place in `stretch` of a cell with a damping */
+  int meeting; /* place in `push` of a cell that meets obstacles */
+} dvi__solid_cell;
 
 /* What a node has beside a free flight. The first bits are the components that are given. */
 enum {
@@ -93,15 +105,11 @@ typedef struct dvi__solid_avi {
   const char *method;
   int n;
   int64_t vertices, cells, active; /* cells with events have the first numbers */
-  int *name;                       /* [cells] the mesh's numbers */
-  int *corner;                     /* [cells*(n+1)] */
-  uint8_t *node_kind, *cell_kind;
-  double *step;  /* [cells] */
-  double *decay; /* [vertices] rates, or empty */
-  int *viscous;  /* [cells] place in `stretch` of cells with a damping */
-  int64_t viscous_count;
-  int *meeting; /* [cells] place in `push` of cells that meet obstacles */
-  int64_t pushes;
+  dvi__solid_cell *cell;           /* [cells] */
+  uint8_t *node_kind;              /* [vertices] */
+  double *step;                    /* [cells] those of `cell` */
+  double *decay;                   /* [vertices] rates, or empty */
+  int64_t viscous_count, pushes;
   int64_t *cell_start; /* [vertices+1] */
   int *cell_of;        /* own numbers of the cells of a vertex, ascending */
   int is_equal;        /* one step for all */
@@ -111,14 +119,18 @@ typedef struct dvi__solid_avi {
   int64_t class_end[DVI__SOLID_CLASSES];
   double shortest, longest, bound, band;
   int threads;
-  struct dvi__solid_members *members; /* NULL for a single thread */
-  dvi__calendar *calendar;            /* of free steps of a single thread */
-  size_t size;                        /* bytes of the block */
-  void *block, *kept;                 /* the state, and that of an earlier time */
+  struct dvi__solid_parts *parts; /* NULL for classes on a single thread */
+  size_t size;                    /* bytes of the block */
+  void *block, *kept;             /* the state, and that of an earlier time */
   dvi__solid_state state;
   dvi__solid_clock clock, kept_clock;
   dvi__solid_view *view;
 } dvi__solid_avi;
+
+/* Fetch a cell before it is needed. These are macros, because compilers take functions that only
+ * fetch for ones that do nothing. */
+#define DVI__FETCH(place) __builtin_prefetch(place, 1)
+#define DVI__FETCH_CELL(cell) (DVI__FETCH(cell), DVI__FETCH(&(cell)->gradient[4]))
 
 /* Carry a node that has a kind to the time t. `touch` is NULL without obstacles. Returns 0, or as
  * dvi__solid_given. */
@@ -184,7 +196,7 @@ static inline double dvi__solid_slot_time(const dvi__solid_avi *avi, int64_t slo
 
 static inline double dvi__solid_event_time(const dvi__solid_avi *avi, int64_t c, int64_t count)
 {
-  return avi->clock.t0 + (double)count * avi->step[c];
+  return avi->clock.t0 + (double)count * avi->cell[c].step;
 }
 
 /* The class of a cell. */
@@ -205,13 +217,15 @@ typedef struct dvi__solid_halt {
   double t;
 } dvi__solid_halt;
 
-/* Let the events up to a time happen. */
+/* Let the events up to a time happen. Which event stops them is left open with parts. */
 dvi__solid_halt dvi__solid_run(dvi__solid_avi *avi, double limit);
+dvi__solid_halt dvi__solid_run_slots(dvi__solid_avi *avi, double limit);
+dvi__solid_halt dvi__solid_run_parts(dvi__solid_avi *avi, double limit);
 
-/* The same on members. Which event stops them is left open. */
-dvi__solid_halt dvi__solid_run_members(dvi__solid_avi *avi, double limit);
+/* The same in the order by time, on a single thread. The parts have to be ordered after it. */
+dvi__solid_halt dvi__solid_run_in_order(dvi__solid_avi *avi, double limit);
 
-/* Order the calendar after the counts. */
+/* Order the events of the parts after the clock and the counts. */
 void dvi__solid_order(dvi__solid_avi *avi);
 
 /* Keep the state, and take it back. */

@@ -42,10 +42,17 @@ int dvi__solid_guide(const dvi__solid_avi *avi, int vertex, double t, dvi__solid
 
 /* ---- forces ---- */
 
+static int force_of(const dvi__solid_avi *avi, const dvi__solid_cell *cell, const double *u,
+                    double *f)
+{
+  return dvi__solid_force_of(avi->n, avi->solid->materials + cell->material, cell->volume,
+                             cell->gradient, u, f);
+}
+
 void dvi__solid_resist(const dvi__solid_avi *avi, int64_t c, const double *w, double *f)
 {
   const dvi_elastic *e = avi->solid;
-  const int64_t cell = avi->name[c];
+  const int64_t cell = avi->cell[c].name;
   memset(f, 0, DVI__SOLID_NUMBERS * sizeof *f);
   dvi__solid_rest_force(e, cell, w, f);
   for (int k = 0; k < (avi->n + 1) * avi->n; k++) f[k] *= e->materials[e->material[cell]].beta;
@@ -57,12 +64,12 @@ int dvi__solid_pull(const dvi__solid_avi *avi, int64_t c, double t, const double
   const int numbers = (avi->n + 1) * avi->n;
   memset(load, 0, DVI__SOLID_NUMBERS * sizeof *load);
   if (avi->is_linear) {
-    dvi__solid_rest_force(avi->solid, avi->name[c], u, f);
+    dvi__solid_rest_force(avi->solid, avi->cell[c].name, u, f);
     return 0;
   }
-  const int returned = dvi__solid_force(avi->solid, avi->name[c], u, f);
-  if (returned != 0 || !(avi->cell_kind[c] & DVI__CELL_LOADED)) return returned;
-  const int of_load = dvi__solid_add_load(avi->solid, avi->name[c], t, load);
+  const int returned = force_of(avi, avi->cell + c, u, f);
+  if (returned != 0 || !(avi->cell[c].kind & DVI__CELL_LOADED)) return returned;
+  const int of_load = dvi__solid_add_load(avi->solid, avi->cell[c].name, t, load);
   if (of_load != 0) return of_load < 0 ? of_load : -of_load;
   for (int k = 0; k < numbers; k++) {
     if (!isfinite(load[k])) return -1;
@@ -77,15 +84,15 @@ int dvi__solid_pull(const dvi__solid_avi *avi, int64_t c, double t, const double
 static void pay_damping(dvi__solid_avi *avi, int64_t c, const double *u, const double *v, double *f)
 {
   const int numbers = (avi->n + 1) * avi->n;
-  double *paid = avi->state.stretch + (int64_t)DVI__SOLID_NUMBERS * avi->viscous[c],
+  double *paid = avi->state.stretch + (int64_t)DVI__SOLID_NUMBERS * avi->cell[c].viscous,
          w[DVI__SOLID_NUMBERS], answer[DVI__SOLID_NUMBERS];
   for (int k = 0; k < numbers; k++) {
-    const double stretch = u[k] + 0.5 * avi->step[c] * v[k];
+    const double stretch = u[k] + 0.5 * avi->cell[c].step * v[k];
     w[k] = stretch - paid[k];
     paid[k] = stretch;
   }
   dvi__solid_resist(avi, c, w, answer);
-  for (int k = 0; k < numbers; k++) f[k] += answer[k] / avi->step[c];
+  for (int k = 0; k < numbers; k++) f[k] += answer[k] / avi->cell[c].step;
 }
 
 /* Sum the sizes of what loads and driven nodes work. */
@@ -95,18 +102,18 @@ static double size_of_work(const dvi__solid_avi *avi, int64_t c, const double *v
   const int n = avi->n;
   double sum = 0;
   for (int a = 0; a <= n; a++) {
-    const int kind = avi->node_kind[avi->corner[c * (n + 1) + a]];
+    const int kind = avi->node_kind[avi->cell[c].corner[a]];
     for (int i = 0; i < n; i++) {
       const int is_driven = (kind & DVI__NODE_DRIVEN) && (kind & 1 << i);
       sum += fabs((is_driven ? f[a * n + i] : load[a * n + i]) * v[a * n + i]);
     }
   }
-  return sum * avi->step[c];
+  return sum * avi->cell[c].step;
 }
 
 static int act_guarded(dvi__solid_avi *avi, int64_t c, double t)
 {
-  const int n = avi->n, *corner = avi->corner + c * (n + 1);
+  const int n = avi->n, *corner = avi->cell[c].corner;
   double u[DVI__SOLID_NUMBERS] = {0}, v[DVI__SOLID_NUMBERS] = {0}, f[DVI__SOLID_NUMBERS],
          load[DVI__SOLID_NUMBERS];
   for (int a = 0; a <= n; a++) {
@@ -125,10 +132,10 @@ static int act_guarded(dvi__solid_avi *avi, int64_t c, double t)
   const int returned = dvi__solid_pull(avi, c, t, u, f, load);
   if (returned != 0) return returned;
   if (avi->state.worked != NULL) avi->state.worked[c] += size_of_work(avi, c, v, f, load);
-  if (avi->cell_kind[c] & DVI__CELL_VISCOUS) pay_damping(avi, c, u, v, f);
+  if (avi->cell[c].kind & DVI__CELL_VISCOUS) pay_damping(avi, c, u, v, f);
   for (int a = 0; a <= n; a++) {
     dvi__solid_node *node = avi->state.node + corner[a];
-    const double kick = avi->step[c] * node->inverse;
+    const double kick = avi->cell[c].step * node->inverse;
     for (int i = 0; i < n; i++)
       if (!(avi->node_kind[corner[a]] & 1 << i)) node->v[i] += kick * f[a * n + i];
   }
@@ -138,21 +145,22 @@ static int act_guarded(dvi__solid_avi *avi, int64_t c, double t)
 
 int dvi__solid_act(dvi__solid_avi *avi, int64_t c, double t)
 {
-  if (avi->cell_kind[c] != 0 || avi->is_linear) return act_guarded(avi, c, t);
-  const int n = avi->n, *corner = avi->corner + c * (n + 1);
+  const dvi__solid_cell *cell = avi->cell + c;
+  if (cell->kind != 0 || avi->is_linear) return act_guarded(avi, c, t);
+  const int n = avi->n;
   double u[DVI__SOLID_NUMBERS] = {0}, f[DVI__SOLID_NUMBERS];
   for (int a = 0; a <= n; a++) {
-    dvi__solid_node *node = avi->state.node + corner[a];
+    dvi__solid_node *node = avi->state.node + cell->corner[a];
     const double span = t - node->tau;
     for (int i = 0; i < DVI__SOLID_AXES; i++) node->u[i] += node->v[i] * span;
     node->tau = t;
     for (int i = 0; i < n; i++) u[a * n + i] = node->u[i];
   }
-  const int returned = dvi__solid_force(avi->solid, avi->name[c], u, f);
+  const int returned = force_of(avi, cell, u, f);
   if (returned != 0) return returned;
   for (int a = 0; a <= n; a++) {
-    dvi__solid_node *node = avi->state.node + corner[a];
-    const double kick = avi->step[c] * node->inverse;
+    dvi__solid_node *node = avi->state.node + cell->corner[a];
+    const double kick = cell->step * node->inverse;
     for (int i = 0; i < n; i++) node->v[i] += kick * f[a * n + i];
   }
   return 0;

@@ -16,6 +16,21 @@ static dvi_status no_memory(const dvi__solid_avi *avi)
 
 /* ---- cells ---- */
 
+/* Copy a cell of the mesh. */
+static void take_cell(const dvi__solid_plan *plan, int64_t name, int64_t c, dvi__solid_avi *avi)
+{
+  const dvi_elastic *e = avi->solid;
+  const int n = avi->n;
+  dvi__solid_cell *cell = avi->cell + c;
+  *cell = (dvi__solid_cell){.step = plan->step[name],
+                            .volume = e->volume[name],
+                            .name = (int)name,
+                            .material = e->material[name]};
+  for (int a = 0; a <= n; a++) cell->corner[a] = e->vertex[name * (n + 1) + a];
+  for (int k = 0; k < n * n; k++) cell->gradient[k] = e->gradient[(name * (n + 1) + 1) * n + k];
+  avi->step[c] = cell->step;
+}
+
 /* Number cells by their classes. Those without events come last. */
 static void number_cells(const dvi__solid_plan *plan, dvi__solid_avi *avi)
 {
@@ -25,23 +40,19 @@ static void number_cells(const dvi__solid_plan *plan, dvi__solid_avi *avi)
   for (int k = 0; k <= plan->classes; k++) begin[k + 1] += begin[k];
   for (int k = 0; k < plan->classes; k++) avi->class_end[k] = begin[k + 1];
   avi->active = begin[plan->classes];
-  for (int64_t c = 0; c < avi->cells; c++) {
-    const int64_t i = begin[isinf(plan->step[c]) ? plan->classes : plan->class[c]]++;
-    avi->name[i] = (int)c;
-    avi->step[i] = plan->step[c];
-    for (int a = 0; a <= avi->n; a++)
-      avi->corner[i * (avi->n + 1) + a] = avi->solid->vertex[c * (avi->n + 1) + a];
-  }
+  for (int64_t c = 0; c < avi->cells; c++)
+    take_cell(plan, c, begin[isinf(plan->step[c]) ? plan->classes : plan->class[c]]++, avi);
 }
 
 static void list_cells(dvi__solid_avi *avi)
 {
   const int width = avi->n + 1;
   int64_t *const start = avi->cell_start;
-  for (int64_t i = 0; i < avi->active * width; i++) start[avi->corner[i] + 1]++;
+  for (int64_t i = 0; i < avi->active * width; i++)
+    start[avi->cell[i / width].corner[i % width] + 1]++;
   for (int64_t v = 0; v < avi->vertices; v++) start[v + 1] += start[v];
   for (int64_t i = 0; i < avi->active * width; i++)
-    avi->cell_of[start[avi->corner[i]]++] = (int)(i / width);
+    avi->cell_of[start[avi->cell[i / width].corner[i % width]]++] = (int)(i / width);
   for (int64_t v = avi->vertices; v > 0; v--) start[v] = start[v - 1];
   start[0] = 0;
 }
@@ -90,21 +101,21 @@ static void find_cell_kinds(dvi__solid_avi *avi)
 {
   const dvi_elastic *e = avi->solid;
   for (int64_t c = 0; c < avi->cells; c++) {
-    const int64_t cell = avi->name[c];
+    const int64_t cell = avi->cell[c].name;
     int kind = 0;
     for (int a = 0; a <= avi->n; a++) {
-      const int of_node = avi->node_kind[avi->corner[c * (avi->n + 1) + a]];
+      const int of_node = avi->node_kind[avi->cell[c].corner[a]];
       if (of_node != 0) kind |= DVI__CELL_GUARDED;
       if (of_node & DVI__NODE_MEETS) kind |= DVI__CELL_MEETS;
     }
-    if (kind & DVI__CELL_MEETS) avi->meeting[c] = (int)avi->pushes++;
+    if (kind & DVI__CELL_MEETS) avi->cell[c].meeting = (int)avi->pushes++;
     if (e->load_start != NULL && e->load_start[cell + 1] > e->load_start[cell] && !avi->is_linear)
       kind |= DVI__CELL_LOADED;
     if (e->materials[e->material[cell]].beta > 0) {
       kind |= DVI__CELL_VISCOUS;
-      avi->viscous[c] = (int)avi->viscous_count++;
+      avi->cell[c].viscous = (int)avi->viscous_count++;
     }
-    avi->cell_kind[c] = (uint8_t)kind;
+    avi->cell[c].kind = kind;
   }
 }
 

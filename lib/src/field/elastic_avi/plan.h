@@ -9,7 +9,6 @@ typedef struct dvi__solid_request {
   int threads;
   int is_equal;  /* one step for all cells */
   int is_free;   /* cells have their own steps, not powers of 2 of the shortest one */
-  int is_queued; /* events are always taken from a calendar, with the same bits */
   int is_linear; /* for small vibrations about rest, without loads and obstacles */
   double band;   /* by which the energy may grow until a run stops. 0 for 2 */
 } dvi__solid_request;

@@ -39,7 +39,7 @@ typedef struct vibrations {
 /* Give displacements of the nodes of a cell. */
 static void gather(const dvi__solid_avi *avi, int64_t c, double *u)
 {
-  const int n = avi->n, *corner = avi->corner + c * (n + 1);
+  const int n = avi->n, *corner = avi->cell[c].corner;
   for (int a = 0; a <= n; a++)
     for (int i = 0; i < n; i++) u[a * n + i] = avi->state.node[corner[a]].u[i];
 }
@@ -49,10 +49,10 @@ static void add_displacements(const dvi__solid_avi *avi, double factor, double *
 {
   for (int64_t c = 0; c < avi->active; c++) {
     double u[NUMBERS] = {0};
-    if (!(avi->cell_kind[c] & DVI__CELL_VISCOUS)) continue;
+    if (!(avi->cell[c].kind & DVI__CELL_VISCOUS)) continue;
     gather(avi, c, u);
     for (int k = 0; k < (avi->n + 1) * avi->n; k++)
-      numbers[(int64_t)NUMBERS * avi->viscous[c] + k] += factor * u[k];
+      numbers[(int64_t)NUMBERS * avi->cell[c].viscous + k] += factor * u[k];
   }
 }
 
@@ -160,10 +160,10 @@ static void scatter(const dvi__flow *flow)
   const dvi__solid_avi *avi = s->avi;
   const dvi_elastic *e = s->solid;
   for (int64_t c = 0; c < avi->active; c++)
-    for (int k = 0; k < (e->n + 1) * e->n && avi->cell_kind[c] & DVI__CELL_VISCOUS; k++) {
-      const int64_t v = avi->corner[c * (e->n + 1) + k / e->n];
+    for (int k = 0; k < (e->n + 1) * e->n && avi->cell[c].kind & DVI__CELL_VISCOUS; k++) {
+      const int64_t v = avi->cell[c].corner[k / e->n];
       const int at = e->unknown[v * e->n + k % e->n];
-      s->memory[(int64_t)NUMBERS * avi->viscous[c] + k] =
+      s->memory[(int64_t)NUMBERS * avi->cell[c].viscous + k] =
           at >= 0 ? 0.5 * avi->step[c] * s->D[at] * s->inverse[at] : 0;
     }
 }
@@ -190,8 +190,8 @@ static void weigh(const dvi__flow *flow, const double *strain, double *image)
   const dvi_matrix K = dvi__csr_view(&s->K, 1);
   dvi_matrix_multiply(&K, 0, strain, image);
   for (int64_t c = 0; c < avi->active; c++) {
-    if (!(avi->cell_kind[c] & DVI__CELL_VISCOUS)) continue;
-    const int64_t at = s->n + (int64_t)NUMBERS * avi->viscous[c];
+    if (!(avi->cell[c].kind & DVI__CELL_VISCOUS)) continue;
+    const int64_t at = s->n + (int64_t)NUMBERS * avi->cell[c].viscous;
     dvi__solid_resist(avi, c, strain + at, image + at);
     for (int k = 0; k < NUMBERS; k++) image[at + k] /= -avi->step[c];
   }

@@ -90,17 +90,17 @@ static void take_values(dvi__solid_avi *avi, double t)
 /* Kick by what a cell owes at the start, the half of a kick where nothing decays. */
 static int kick_first(dvi__solid_avi *avi, int64_t c, double t)
 {
-  const int n = avi->n, *corner = avi->corner + c * (n + 1);
+  const int n = avi->n, *corner = avi->cell[c].corner;
   double u[DVI__SOLID_NUMBERS] = {0}, w[DVI__SOLID_NUMBERS] = {0}, f[DVI__SOLID_NUMBERS] = {0},
          load[DVI__SOLID_NUMBERS], answer[DVI__SOLID_NUMBERS] = {0};
-  dvi__solid_gather(avi->solid, avi->name[c], avi->view->u, u);
-  dvi__solid_gather(avi->solid, avi->name[c], avi->view->rate, w);
+  dvi__solid_gather(avi->solid, avi->cell[c].name, avi->view->u, u);
+  dvi__solid_gather(avi->solid, avi->cell[c].name, avi->view->rate, w);
   const int returned = dvi__solid_pull(avi, c, t, u, f, load);
   if (returned != 0) return returned;
-  if (avi->cell_kind[c] & DVI__CELL_VISCOUS) {
-    double *paid = avi->state.stretch + (int64_t)DVI__SOLID_NUMBERS * avi->viscous[c];
+  if (avi->cell[c].kind & DVI__CELL_VISCOUS) {
+    double *paid = avi->state.stretch + (int64_t)DVI__SOLID_NUMBERS * avi->cell[c].viscous;
     for (int k = 0; k < (n + 1) * n; k++) {
-      w[k] *= 0.5 * avi->step[c];
+      w[k] *= 0.5 * avi->cell[c].step;
       paid[k] = u[k] + w[k];
     }
     dvi__solid_resist(avi, c, w, answer);
@@ -108,12 +108,12 @@ static int kick_first(dvi__solid_avi *avi, int64_t c, double t)
   for (int a = 0; a <= n; a++) {
     dvi__solid_node *node = avi->state.node + corner[a];
     const double part = -dvi__decay_owed(avi->decay != NULL ? avi->decay[corner[a]] : 0,
-                                         avi->step[c], 0);
+                                         avi->cell[c].step, 0);
     for (int i = 0; i < n; i++)
       if (!(avi->node_kind[corner[a]] & 1 << i))
         node->v[i] += node->inverse * (part * f[a * n + i] + answer[a * n + i]);
   }
-  for (int k = 0; k < (n + 1) * n; k++) f[k] += 2 * answer[k] / avi->step[c];
+  for (int k = 0; k < (n + 1) * n; k++) f[k] += 2 * answer[k] / avi->cell[c].step;
   dvi__solid_note(avi, c, t, u, f);
   return 0;
 }
@@ -132,7 +132,7 @@ dvi_status dvi__solid_avi_start(dvi__solid_avi *avi, double t, const double *u, 
     const int returned = kick_first(avi, c, t);
     if (returned == 0) continue;
     dvi__solid_take_back(avi);
-    return dvi__solid_refuse(avi->solid, avi->name[c], returned);
+    return dvi__solid_refuse(avi->solid, avi->cell[c].name, returned);
   }
   dvi__solid_keep(avi);
   dvi__solid_order(avi);

@@ -49,17 +49,17 @@ static dvi_status see_debt(const dvi__solid_avi *avi, int64_t c, const double *u
   const double since = avi->clock.t - time_of_cell(avi, c);
   double f[DVI__SOLID_NUMBERS], load[DVI__SOLID_NUMBERS], answer[DVI__SOLID_NUMBERS] = {0};
   const int returned = dvi__solid_pull(avi, c, avi->clock.t, u, f, load);
-  if (returned != 0) return dvi__solid_refuse(avi->solid, avi->name[c], returned);
-  if (avi->cell_kind[c] & DVI__CELL_VISCOUS) {
-    const double *paid = avi->state.stretch + (int64_t)DVI__SOLID_NUMBERS * avi->viscous[c];
+  if (returned != 0) return dvi__solid_refuse(avi->solid, avi->cell[c].name, returned);
+  if (avi->cell[c].kind & DVI__CELL_VISCOUS) {
+    const double *paid = avi->state.stretch + (int64_t)DVI__SOLID_NUMBERS * avi->cell[c].viscous;
     double w[DVI__SOLID_NUMBERS];
     for (int k = 0; k < (n + 1) * n; k++) w[k] = u[k] - paid[k];
     dvi__solid_resist(avi, c, w, answer);
   }
   for (int a = 0; a <= n; a++) {
-    const int vertex = avi->corner[c * (n + 1) + a];
-    const double owed = dvi__decay_owed(avi->decay != NULL ? avi->decay[vertex] : 0, avi->step[c],
-                                        since);
+    const int vertex = avi->cell[c].corner[a];
+    const double owed = dvi__decay_owed(avi->decay != NULL ? avi->decay[vertex] : 0,
+                                        avi->cell[c].step, since);
     for (int i = 0; i < n; i++)
       debt[a * n + i] = (avi->node_kind[vertex] & 1 << i)
                             ? 0
@@ -78,7 +78,7 @@ static dvi_status see_rate(const dvi__solid_avi *avi, int vertex, double *rate)
   for (int i = 0; i < n; i++) rate[i] = own.v[i];
   for (int64_t k = avi->cell_start[vertex]; k < avi->cell_start[vertex + 1]; k++) {
     const int64_t c = avi->cell_of[k];
-    const int *corner = avi->corner + c * (n + 1);
+    const int *corner = avi->cell[c].corner;
     double u[DVI__SOLID_NUMBERS] = {0}, debt[DVI__SOLID_NUMBERS] = {0};
     for (int a = 0; a <= n; a++) {
       DVI_TRY(see_node(avi, corner[a], &node));
@@ -115,11 +115,11 @@ static dvi_status see_debts(const dvi__solid_avi *avi)
   const int n = avi->n;
   for (int64_t c = 0; c < avi->active; c++) {
     double u[DVI__SOLID_NUMBERS] = {0}, debt[DVI__SOLID_NUMBERS] = {0};
-    dvi__solid_gather(avi->solid, avi->name[c], avi->view->u, u);
+    dvi__solid_gather(avi->solid, avi->cell[c].name, avi->view->u, u);
     DVI_TRY(see_debt(avi, c, u, debt));
     for (int a = 0; a <= n; a++)
       for (int i = 0; i < n; i++)
-        avi->view->rate[(int64_t)avi->corner[c * (n + 1) + a] * n + i] += debt[a * n + i];
+        avi->view->rate[(int64_t)avi->cell[c].corner[a] * n + i] += debt[a * n + i];
   }
   return DVI_OK;
 }
