@@ -19,8 +19,8 @@ static int shake(double t, const double *X, double *u, double *rate, void *user)
   (void)user;
   memset(u, 0, 3 * sizeof *u);
   memset(rate, 0, 3 * sizeof *rate);
-  u[0] = 0.05 * sin(3 * t) * (1 + X[1]);
-  rate[0] = 0.15 * cos(3 * t) * (1 + X[1]);
+  u[0] = 0.02 * sin(3 * t) * (1 + X[1]);
+  rate[0] = 0.06 * cos(3 * t) * (1 + X[1]);
   return 0;
 }
 
