@@ -186,6 +186,12 @@ static void list_foreign(const survey *s, int k)
   p->foreign_start[p->edge] = count;
 }
 
+static void mark_edge(const survey *s, const dvi__solid_part *p)
+{
+  for (int64_t v = 0; v < s->avi->vertices; v++)
+    if (s->user[v] == SEVERAL) p->mark[v / 64] |= UINT64_C(1) << v % 64;
+}
+
 static dvi_status make_edge(const survey *s, int k)
 {
   dvi__solid_part *p = s->all->part + k;
@@ -193,14 +199,16 @@ static dvi_status make_edge(const survey *s, int k)
   number_nodes(s, k, 0);
   p->room = 2 * p->count;
   p->hold = DVI_NEW(dvi__part_hold, p->nodes);
+  p->mark = DVI_NEW(uint64_t, s->avi->vertices / 64 + 1);
   p->late = DVI_NEW(dvi__part_event, p->room);
   p->later = DVI_NEW(dvi__part_event, p->room);
   p->foreign_start = DVI_NEW(int64_t, p->edge + 1);
-  if (!p->hold || !p->late || !p->later || !p->foreign_start) return no_memory(s->avi);
+  if (!p->hold || !p->mark || !p->late || !p->later || !p->foreign_start) return no_memory(s->avi);
   list_foreign(s, k);
   p->foreign = DVI_NEW(int, p->foreign_start[p->edge]);
   if (p->foreign == NULL) return no_memory(s->avi);
   list_foreign(s, k);
+  mark_edge(s, p);
   return DVI_OK;
 }
 
@@ -225,6 +233,7 @@ void dvi__solid_parts_destroy(dvi__solid_parts **parts)
     dvi__solid_part *p = all->part + k;
     dvi__calendar_destroy(&p->calendar);
     dvi__release(p->hold);
+    dvi__release(p->mark);
     dvi__release(p->foreign_start);
     dvi__release(p->foreign);
     dvi__release(p->late);

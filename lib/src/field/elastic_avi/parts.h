@@ -25,6 +25,7 @@ typedef struct dvi__solid_part {
   int64_t slot, next, due; /* of classes: the slot to go on in, a place in `cell`, and the end */
   int64_t nodes, edge;     /* nodes, and the first of them, that others have, too */
   dvi__part_hold *hold;    /* [nodes] */
+  uint64_t *mark;          /* bits of all vertices: those of the edge, and with a hold */
   int64_t *foreign_start;  /* [edge+1] */
   int *foreign;            /* own numbers of the cells of others */
   dvi__part_event *late, *later; /* [room] events that were put off, in their order */

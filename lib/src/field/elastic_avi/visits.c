@@ -10,6 +10,8 @@
  * part has a hold, the first event there that has not happened and cannot in this visit. At nodes
  * of the edge, those of foreign cells are found at most once a visit. An event is put off if a hold
  * of its nodes is earlier, and then holds its other nodes. A visit ends when too many were put off.
+ * Nodes that have a hold, or may have one, are marked. An event of a cell without a marked node, as
+ * nearly all are, can happen without a question, and no other part asks for it.
  *
  * A cell publishes its next event (release) after the present one has happened, and others look at
  * it (acquire) before they touch a common node. Next events only become later, so that a hold stays
@@ -130,12 +132,41 @@ static int is_held(const dvi__solid_avi *avi, const dvi__solid_part *p, dvi__par
   return 0;
 }
 
+/* ---- marks ---- */
+
+static int is_marked(const dvi__solid_part *p, const dvi__solid_cell *cell, int corners)
+{
+  uint64_t marks = 0;
+  for (int a = 0; a < corners; a++)
+    marks |= p->mark[cell->corner[a] >> 6] >> (cell->corner[a] & 63);
+  return marks & 1;
+}
+
+static void mark(const dvi__solid_part *p, int node)
+{
+  p->mark[node >> 6] |= UINT64_C(1) << (node & 63);
+}
+
+/* Take the marks of the last visit from nodes that are not at the edge. */
+static void clear_marks(const dvi__solid_avi *avi, const dvi__solid_part *p)
+{
+  for (int64_t i = 0; i < p->lates; i++) {
+    const int64_t c = p->late[i].cell;
+    for (int a = 0; a <= avi->n; a++) {
+      const int node = avi->cell[c].corner[a];
+      if (avi->parts->corner[c * (avi->n + 1) + a] >= p->edge)
+        p->mark[node >> 6] &= ~(UINT64_C(1) << (node & 63));
+    }
+  }
+}
+
 static void put_off(const dvi__solid_avi *avi, const dvi__solid_part *p, dvi__part_event event)
 {
   const int *corner = avi->parts->corner + event.cell * (avi->n + 1);
   for (int a = 0; a <= avi->n; a++) {
     dvi__part_event *hold = hold_of(avi, p, corner[a]);
     if (is_before(event, *hold)) *hold = event;
+    mark(p, avi->cell[event.cell].corner[a]);
   }
 }
 
@@ -147,8 +178,8 @@ static void publish(const dvi__solid_avi *avi, int64_t cell, double after)
     atomic_store_explicit(&avi->parts->after[cell], after, memory_order_release);
 }
 
-/* Let an event happen. Returns 0 if it fails. */
-static int act(const run *r, dvi__solid_part *p, dvi__part_event event)
+/* Let an event happen, and tell other parts of it if they may ask. Returns 0 if it fails. */
+static int act(const run *r, dvi__solid_part *p, dvi__part_event event, int is_shared)
 {
   dvi__solid_avi *avi = r->avi;
   const double t = avi->is_free ? event.at : dvi__solid_slot_time(avi, (int64_t)event.at);
@@ -162,9 +193,9 @@ static int act(const run *r, dvi__solid_part *p, dvi__part_event event)
   if (avi->is_free) {
     const int64_t count = ++avi->state.count[event.cell];
     const double after = dvi__solid_event_time(avi, event.cell, count + 1);
-    publish(avi, event.cell, after);
+    if (is_shared) publish(avi, event.cell, after);
     dvi__calendar_put(p->calendar, after, event.cell);
-  } else {
+  } else if (is_shared) {
     publish(avi, event.cell, event.at + avi->cell[event.cell].step / avi->shortest);
   }
   return 1;
@@ -175,7 +206,7 @@ static void run_alone(const run *r, dvi__solid_part *p)
 {
   for (dvi__part_event event; find_next(r, p, &event);) {
     take_next(r, p);
-    if (!act(r, p, event)) return;
+    if (!act(r, p, event, 0)) return;
   }
 }
 
@@ -209,14 +240,16 @@ static int visit(const run *r, dvi__solid_part *p)
   int64_t first = 0, kept = 0;
   dvi__part_event event;
   p->visits++;
+  clear_marks(r->avi, p);
   for (int64_t balance = PATIENCE; balance > 0 && take(r, p, &first, kept, &event);) {
-    if (is_held(r->avi, p, event)) {
+    const int marked = is_marked(p, r->avi->cell + event.cell, r->avi->n + 1);
+    if (marked && is_held(r->avi, p, event)) {
       put_off(r->avi, p, event);
       p->later[kept++] = event;
       p->delays++;
       balance--;
     } else {
-      if (!act(r, p, event)) return 0;
+      if (!act(r, p, event, marked)) return 0;
       if (balance < PATIENCE) balance++;
     }
   }
@@ -345,7 +378,7 @@ static dvi__solid_halt run_calendars(dvi__solid_avi *avi, double limit)
   dvi__part_event event;
   for (dvi__solid_part *p; (p = find_first(&r, &event)) != NULL;) {
     take_next(&r, p);
-    if (!act(&r, p, event)) return p->halt;
+    if (!act(&r, p, event, 0)) return p->halt;
     avi->clock.events++;
     avi->clock.t = p->t;
   }
