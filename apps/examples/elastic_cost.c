@@ -236,10 +236,11 @@ typedef struct row {
 
 static dvi_march_options options_of(const row *r)
 {
-  return (dvi_march_options){.size = sizeof(dvi_march_options),
-                             .method = r->method,
-                             .fraction = r->fraction,
-                             .threads = r->threads};
+  dvi_march_options options = {.size = sizeof options};
+  options.method = r->method;
+  options.fraction = r->fraction;
+  options.threads = r->threads;
+  return options;
 }
 
 /* Run for a period, and give the displacements at its end. */
@@ -275,7 +276,7 @@ static void find_errors(const bar *b, const double *u, const double *fine, row *
 static void print_growth(FILE *out, const bar *small, const row *r)
 {
   const dvi_march_options options = options_of(r);
-  dvi_stability report = {.growth = 1, .is_stable = 1};
+  dvi_stability report = {.is_stable = 1, .growth = 1};
   if (strcmp(r->method, "verlet") != 0)
     need(dvi_elastic_stability(small->elastic, &options, 0, &report));
   fprintf(out, "%.1e,%s,", fabs(log(report.growth)), report.is_stable ? "yes" : "no");

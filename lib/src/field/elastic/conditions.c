@@ -70,8 +70,8 @@ int dvi__solid_given(const dvi_elastic *e, int64_t vertex, double t, double *u, 
 dvi_status dvi__solid_refuse_given(const dvi_elastic *e, int64_t vertex, int returned)
 {
   const dvi__cell_name name = dvi__name_cell(e->mesh, 0, vertex);
-  char reason[DVI__SENTENCE_SIZE];
   if (returned == DVI__GIVEN_INSIDE) {
+    char reason[DVI__SENTENCE_SIZE];
     dvi__take_reason(reason);
     return dvi__fail(DVI_CALLBACK_FAILED,
                      "elastic: %s: let it stop there, or leave the component along the obstacle's "

@@ -97,20 +97,25 @@ static int push(double t, const double *X, const double *normal, double *force, 
   return dvi__solid_function_value(user, t, X, normal, force);
 }
 
+static bool refuse_load(dvi_scene *scene, const dvi__tree *key)
+{
+  static const char *const gravity = "gravity";
+  char hint[64];
+  return dvi__scene_refuse(scene, key->span,
+                           "a load is 'gravity', or by a part's name a force per volume, as in "
+                           "'{force: [0, 0, -1]}', or of the boundary a traction per area, as in "
+                           "'{traction: -2*normal}'%s",
+                           dvi__nearest(key->text, 1, &gravity, hint, sizeof hint));
+}
+
 static bool read_load(dvi_scene *scene, const dvi__tree *key, const dvi__tree *tree)
 {
-  static const char *const known[] = {"force", "traction"}, *const gravity = "gravity";
-  char hint[64];
+  static const char *const known[] = {"force", "traction"};
   struct dvi__scene_elastic *s = scene->field->elastic;
   dvi__solid_function *function;
   int64_t cells, count;
   if (tree->kind == DVI__MAPPING && !dvi__want_keys(scene, tree, "a load", 2, known)) return false;
-  if (tree->kind != DVI__MAPPING || tree->count != 1)
-    return dvi__scene_refuse(scene, key->span,
-                             "a load is 'gravity', or by a part's name a force per volume, as in "
-                             "'{force: [0, 0, -1]}', or of the boundary a traction per area, as in "
-                             "'{traction: -2*normal}'%s",
-                             dvi__nearest(key->text, 1, &gravity, hint, sizeof hint));
+  if (tree->kind != DVI__MAPPING || tree->count != 1) return refuse_load(scene, key);
   const bool is_traction = strcmp(tree->key[0]->text, "traction") == 0;
   const int degree = scene->field->dimension - is_traction;
   (void)dvi_mesh_part_cells(scene->field->mesh, key->text, scene->field->dimension, &cells);
