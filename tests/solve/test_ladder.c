@@ -232,13 +232,6 @@ static dvi_status shifted_jacobian(void *of, const double *x, double *values)
   return DVI_OK;
 }
 
-static dvi_status no_chord(void *of, const double *x)
-{
-  (void)of;
-  (void)x;
-  return DVI_OK;
-}
-
 static dvi_status unit_rows(void *of, double *scale, int *unchanged)
 {
   (void)of;
@@ -257,7 +250,6 @@ START_TEST(shifts_of_singular_jacobians_give_steps_of_least_norm)
                                     .linear = DVI__LINEAR_COMPLEX,
                                     .residual = square_rows,
                                     .jacobian = shifted_jacobian,
-                                    .prepare_chord = no_chord,
                                     .row_scale = unit_rows,
                                     .renewed = 1};
   solver_bench bench = {0};

@@ -40,12 +40,6 @@ static dvi_status chain_jacobian(void *user, const double *x, double *values)
   return answer_of(&chain->jacobian_fault, chain->jacobians, &values[3]);
 }
 
-static dvi_status chain_prepare(void *user, const double *x)
-{
-  (void)user, (void)x;
-  return DVI_OK;
-}
-
 static void chain_chord(void *user, double *r)
 {
   equation_chain *chain = user;
@@ -111,7 +105,6 @@ void create_chain_solver(equation_chain *chain, solver_bench *bench)
                                 .of = chain,
                                 .residual = chain_residual,
                                 .jacobian = chain_jacobian,
-                                .prepare_chord = chain_prepare,
                                 .chord = chain_chord,
                                 .row_scale = chain_scale},
               bench);
@@ -132,7 +125,6 @@ static dvi__equations equations_of(single_equation *equation)
                           .of = equation,
                           .residual = single_residual,
                           .jacobian = single_jacobian,
-                          .prepare_chord = chain_prepare,
                           .chord = single_chord,
                           .row_scale = single_scale};
 }

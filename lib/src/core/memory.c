@@ -27,7 +27,7 @@ static void *allocate_aligned(size_t bytes)
 {
 #ifdef MADV_HUGEPAGE
   if (bytes >= 2 * (size_t)HUGE_PAGE) {
-    void *memory = aligned_alloc(HUGE_PAGE, bytes);
+    void *memory = aligned_alloc(HUGE_PAGE, (bytes + HUGE_PAGE - 1) / HUGE_PAGE * HUGE_PAGE);
     if (memory != NULL) (void)madvise(memory, bytes, MADV_HUGEPAGE);
     return memory;
   }
@@ -37,7 +37,7 @@ static void *allocate_aligned(size_t bytes)
 
 void *dvi__allocate(size_t count, size_t size)
 {
-  if (!allocation_may_succeed() || (size > 0 && count > (SIZE_MAX - LINE) / size)) return NULL;
+  if (!allocation_may_succeed() || (size > 0 && count > (SIZE_MAX - HUGE_PAGE) / size)) return NULL;
   const size_t bytes = count * size, whole = bytes > 0 ? (bytes + LINE - 1) / LINE * LINE : LINE;
   void *memory = allocate_aligned(whole);
   if (memory == NULL) return NULL;

@@ -9,12 +9,6 @@
 
 /* ---- create ---- */
 
-static dvi_status no_chord(void *of, const double *x)
-{
-  (void)of, (void)x;
-  return DVI_OK;
-}
-
 dvi_status dvi__stationary_create(dvi__stepper *self, dvi__equations *equations,
                                   dvi__stationary *stationary)
 {
@@ -25,8 +19,6 @@ dvi_status dvi__stationary_create(dvi__stepper *self, dvi__equations *equations,
   if (stationary->x == NULL || stationary->room == NULL)
     return dvi__fail(DVI_NO_MEMORY, "%s: no memory for %zu unknowns", self->method->name, unknowns);
   equations->linear = dvi__linear_for_exchanges(equations->unknowns);
-  /* KINSOL needs this function; only fixed-point iteration uses the chord */
-  equations->prepare_chord = no_chord;
   return dvi__solver_create(equations, self->counters, &stationary->solver);
 }
 

@@ -274,10 +274,15 @@ static dvi_status fixed_point_iterate(dvi__solver *s, double *x, double *correct
   return DVI_OK;
 }
 
+static dvi_status prepare_chord(dvi__solver *s, const double *x)
+{
+  const dvi__equations *equations = &s->equations;
+  return equations->prepare_chord != NULL ? equations->prepare_chord(equations->of, x) : DVI_OK;
+}
+
 static dvi_status fixed_point_begin(dvi__solver *s, const double *x)
 {
-  if (s->equations.fixed_point_iterate == NULL)
-    return s->equations.prepare_chord(s->equations.of, x);
+  if (s->equations.fixed_point_iterate == NULL) return prepare_chord(s, x);
   s->equations.fixed_point_begin(s->equations.of, x);
   return DVI_OK;
 }
@@ -355,7 +360,7 @@ static dvi_status solve_by_kinsol(dvi__solver *s, double size, double *x, dvi__s
 {
   DVI_TRY(solver_prepare_kinsol(s));
   s->counters->kinsols++;
-  DVI_TRY(s->equations.prepare_chord(s->equations.of, x));
+  DVI_TRY(prepare_chord(s, x));
   /* KINSOL's own test is skipped. Newton's method from its last point is the stricter test. */
   const dvi_status searched = dvi__kinsol_solve(s->kinsol, size, x, report);
   if (searched < 0) return searched;
@@ -385,7 +390,7 @@ dvi_status dvi__certify(dvi__solver *solver, double size, const double *x,
 {
   int certified = 0;
   DVI_TRY(solver_prepare_kinsol(solver));
-  DVI_TRY(solver->equations.prepare_chord(solver->equations.of, x));
+  DVI_TRY(prepare_chord(solver, x));
   DVI_TRY(dvi__kinsol_certify(solver->kinsol, size, x, &certified, report));
   if (!certified)
     return dvi__fail(DVI_NOT_CONVERGED,

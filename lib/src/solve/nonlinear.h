@@ -40,8 +40,8 @@ struct dvi__equations {
   const dvi__operator *whole;
   dvi_status (*residual)(void *of, const double *x, double *r);
   dvi_status (*jacobian)(void *of, const double *x, double *values);
-  dvi_status (*prepare_chord)(void *of, const double *x);
-  void (*chord)(void *of, double *r); /* r <- C^{-1} r */
+  dvi_status (*prepare_chord)(void *of, const double *x); /* NULL if nothing is to be prepared */
+  void (*chord)(void *of, double *r);                     /* r <- C^{-1} r */
   /* Set scale [unknowns] > 0 to the size of a row per unit of an unknown. Called after
    * prepare_chord. *unchanged, 0 before, becomes 1 if the sizes are those of the last call. */
   dvi_status (*row_scale)(void *of, double *scale, int *unchanged);

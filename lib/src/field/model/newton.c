@@ -64,13 +64,6 @@ static dvi_status row_scale(void *of, double *scale, int *unchanged)
   return DVI_OK;
 }
 
-static dvi_status prepare_nothing(void *of, const double *x)
-{
-  (void)of;
-  (void)x;
-  return DVI_OK;
-}
-
 static dvi_status run(statics *s, double *x, dvi_field_solve_report *report)
 {
   dvi_counters counters = {0};
@@ -82,7 +75,6 @@ static dvi_status run(statics *s, double *x, dvi_field_solve_report *report)
                                     .linear = DVI__LINEAR_SPARSE,
                                     .residual = residual,
                                     .jacobian = jacobian,
-                                    .prepare_chord = prepare_nothing,
                                     .row_scale = row_scale};
   DVI_TRY(dvi__solver_create(&equations, &counters, &solver));
   const dvi_status status = dvi__solve(solver, DVI__KINSOL, 0, 0, 0, x, &solved);

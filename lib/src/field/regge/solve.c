@@ -264,13 +264,6 @@ static dvi_status row_scale(void *of, double *scale, int *unchanged)
   return DVI_OK;
 }
 
-static dvi_status prepare_nothing(void *of, const double *x)
-{
-  (void)of;
-  (void)x;
-  return DVI_OK;
-}
-
 /* ---- the solution ---- */
 
 /* Without held lengths the sum of l_e dS/dl_e is (n-2) sum |h| eps - n Lambda V. */
@@ -356,7 +349,6 @@ static dvi_status start(search *s)
                                     .linear = DVI__LINEAR_COMPLEX,
                                     .residual = residual,
                                     .jacobian = jacobian,
-                                    .prepare_chord = prepare_nothing,
                                     .row_scale = row_scale,
                                     .magnitudes = magnitudes,
                                     .renewed = 1};
