@@ -81,7 +81,8 @@ dvi_status dvi__solid_avi_create(const dvi_elastic *solid, const dvi__solid_requ
                         .threads = request->threads};
   dvi_status status = allocate(s);
   if (status == DVI_OK) status = dvi__solid_lay_out(&plan, s);
-  if (status == DVI_OK && (s->is_free || s->threads > 1)) status = dvi__solid_parts_create(s);
+  if (status == DVI_OK && (s->is_free || s->threads > 1))
+    status = dvi__solid_parts_create(&plan, s);
   dvi__solid_plan_clear(&plan);
   if (status == DVI_OK)
     *avi = s;

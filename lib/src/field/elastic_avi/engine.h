@@ -44,6 +44,7 @@ typedef struct dvi__solid_cell {
   int material, kind;
   int viscous; /* place in `stretch` of a cell with a damping */
   int meeting; /* place in `push` of a cell that meets obstacles */
+  int edge;    /* number among the cells at edges of parts, or -1 */
 } dvi__solid_cell;
 
 /* What a node has beside a free flight. The first bits are the components that are given. */

@@ -1,12 +1,14 @@
 /* Cells are stored in the order in which they act. With classes the cells that are due in a slot
- * are the first ones. In a class, and with free steps, they keep the mesh's order, and with it what
- * that has of locality. */
+ * are the first ones, and those of a class have their turns (slabs.c). Else they keep the mesh's
+ * order, and with it what that has of locality. */
 #include "field/elastic_avi/layout.h"
 
 #include <math.h>
 
 #include "core/memory.h"
 #include "core/status.h"
+
+enum { TURNS = 3 };
 
 static dvi_status no_memory(const dvi__solid_avi *avi)
 {
@@ -25,23 +27,29 @@ static void take_cell(const dvi__solid_plan *plan, int64_t name, int64_t c, dvi_
   *cell = (dvi__solid_cell){.step = plan->step[name],
                             .volume = e->volume[name],
                             .name = (int)name,
-                            .material = e->material[name]};
+                            .material = e->material[name],
+                            .edge = -1};
   for (int a = 0; a <= n; a++) cell->corner[a] = e->vertex[name * (n + 1) + a];
   for (int k = 0; k < n * n; k++) cell->gradient[k] = e->gradient[(name * (n + 1) + 1) * n + k];
   avi->step[c] = cell->step;
 }
 
-/* Number cells by their classes. Those without events come last. */
+static int group_of(const dvi__solid_plan *plan, int64_t name)
+{
+  const int class = isinf(plan->step[name]) ? plan->classes : plan->class[name];
+  return class * TURNS + plan->turn[name];
+}
+
+/* Number cells by classes and turns. Those without events come last. */
 static void number_cells(const dvi__solid_plan *plan, dvi__solid_avi *avi)
 {
-  int64_t begin[DVI__SOLID_CLASSES + 2] = {0};
-  for (int64_t c = 0; c < avi->cells; c++)
-    begin[1 + (isinf(plan->step[c]) ? plan->classes : plan->class[c])]++;
-  for (int k = 0; k <= plan->classes; k++) begin[k + 1] += begin[k];
-  for (int k = 0; k < plan->classes; k++) avi->class_end[k] = begin[k + 1];
-  avi->active = begin[plan->classes];
-  for (int64_t c = 0; c < avi->cells; c++)
-    take_cell(plan, c, begin[isinf(plan->step[c]) ? plan->classes : plan->class[c]]++, avi);
+  int64_t begin[(DVI__SOLID_CLASSES + 1) * TURNS + 1] = {0};
+  const int64_t *class_begin = begin;
+  for (int64_t c = 0; c < avi->cells; c++) begin[1 + group_of(plan, c)]++;
+  for (int k = 0; k < (plan->classes + 1) * TURNS; k++) begin[k + 1] += begin[k];
+  for (int k = 0; k < plan->classes; k++) avi->class_end[k] = *(class_begin += TURNS);
+  avi->active = *class_begin;
+  for (int64_t c = 0; c < avi->cells; c++) take_cell(plan, c, begin[group_of(plan, c)]++, avi);
 }
 
 static void list_cells(dvi__solid_avi *avi)

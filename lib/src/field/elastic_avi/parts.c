@@ -1,32 +1,17 @@
-/* Parts of the cells, one for each thread, with equal numbers of events in a unit of time.
- *
- * The cuts are across an axis, the one which leaves the fewest events to cells at the edge of a
- * part. Parts need not have as much to do as others in each slot. What matters is that the edges
- * are short, because they wait for each other. */
+/* Parts of the cells, one for each thread. */
 #include "field/elastic_avi/parts.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "core/memory.h"
 #include "core/status.h"
 
-/* Marks of nodes. */
-enum { NOBODY = -1, SEVERAL = -2 };
-
-typedef struct placed {
-  double place;
-  int cell;
-} placed;
-
 typedef struct survey {
   const dvi__solid_avi *avi;
   dvi__solid_parts *all;
-  placed *row; /* [active] cells along an axis */
-  int *owner;  /* [active] */
-  int *user;   /* [vertices] the part of all cells of a node, or a mark */
-  int *number; /* [vertices] the number of a node in a part */
-  int *seen;   /* [vertices] the last part that has numbered a node */
+  int *owner; /* [active] */
+  int *seen;  /* [active] the last cell that has found another */
+  int *found; /* [active] */
 } survey;
 
 static dvi_status no_memory(const dvi__solid_avi *avi)
@@ -35,94 +20,12 @@ static dvi_status no_memory(const dvi__solid_avi *avi)
                    avi->method, (long long)avi->active, avi->threads);
 }
 
-/* ---- cuts ---- */
-
-static int compare(const void *first, const void *second)
+/* Every part gets slabs in a row. */
+static void share_out(const survey *s, const dvi__solid_plan *plan)
 {
-  const placed *a = first, *b = second;
-  if (a->place != b->place) return a->place < b->place ? -1 : 1;
-  return (a->cell > b->cell) - (a->cell < b->cell);
-}
-
-static void put_in_row(const survey *s, int axis)
-{
-  const dvi__solid_avi *avi = s->avi;
-  for (int64_t c = 0; c < avi->active; c++) {
-    double sum = 0;
-    for (int a = 0; a <= avi->n; a++)
-      sum += avi->solid->point[(int64_t)avi->cell[c].corner[a] * avi->n + axis];
-    s->row[c] = (placed){sum, (int)c};
-  }
-  qsort(s->row, (size_t)avi->active, sizeof *s->row, compare);
-}
-
-/* Cut the row. Every part gets a cell. */
-static void cut(const survey *s)
-{
-  const dvi__solid_avi *avi = s->avi;
-  const int parts = s->all->count;
-  double whole = 0, sum = 0;
-  for (int64_t c = 0; c < avi->active; c++) whole += 1 / avi->step[c];
-  int part = 0;
-  int64_t taken = 0;
-  for (int64_t i = 0; i < avi->active; i++) {
-    const int is_full = sum >= whole * (part + 1) / parts,
-              is_needed = avi->active - i < parts - part;
-    if (taken > 0 && part < parts - 1 && (is_full || is_needed)) {
-      part++;
-      taken = 0;
-    }
-    s->owner[s->row[i].cell] = part;
-    sum += 1 / avi->step[s->row[i].cell];
-    taken++;
-  }
-}
-
-static void find_users(const survey *s)
-{
-  const dvi__solid_avi *avi = s->avi;
-  for (int64_t v = 0; v < avi->vertices; v++) s->user[v] = s->seen[v] = NOBODY;
-  for (int64_t c = 0; c < avi->active; c++)
-    for (int a = 0; a <= avi->n; a++) {
-      int *user = s->user + avi->cell[c].corner[a];
-      if (*user == NOBODY) *user = s->owner[c];
-      if (*user != s->owner[c]) *user = SEVERAL;
-    }
-}
-
-static int is_at_edge(const survey *s, int64_t c)
-{
-  for (int a = 0; a <= s->avi->n; a++)
-    if (s->user[s->avi->cell[c].corner[a]] == SEVERAL) return 1;
-  return 0;
-}
-
-/* Cut across an axis. Returns the events of cells at the edges in a unit of time. */
-static double cut_across(const survey *s, int axis)
-{
-  double events = 0;
-  put_in_row(s, axis);
-  cut(s);
-  find_users(s);
   for (int64_t c = 0; c < s->avi->active; c++)
-    if (is_at_edge(s, c)) events += 1 / s->avi->step[c];
-  return events;
+    s->owner[c] = plan->slab[s->avi->cell[c].name] * s->all->count / plan->slabs;
 }
-
-/* Find the owners of cells and the users of nodes. */
-static void share_out(const survey *s)
-{
-  double least = INFINITY;
-  int best = 0;
-  for (int axis = 0; axis < s->avi->n; axis++) {
-    const double events = cut_across(s, axis);
-    if (events < least) best = axis;
-    least = fmin(least, events);
-  }
-  (void)cut_across(s, best);
-}
-
-/* ---- cells and nodes of parts ---- */
 
 /* List the cells of each part. */
 static void list_cells(const survey *s)
@@ -140,77 +43,98 @@ static void list_cells(const survey *s)
   }
 }
 
-/* Number the nodes of the edge of a part, or the others. */
-static void number_nodes(const survey *s, int k, int is_edge)
-{
-  const dvi__solid_avi *avi = s->avi;
-  dvi__solid_part *p = s->all->part + k;
-  for (int64_t i = 0; i < p->count; i++)
-    for (int a = 0; a <= avi->n; a++) {
-      const int v = avi->cell[p->cell[i]].corner[a];
-      if ((s->user[v] == SEVERAL) != is_edge) continue;
-      if (s->seen[v] != k) s->number[v] = (int)p->nodes++;
-      s->seen[v] = k;
-      s->all->corner[(int64_t)p->cell[i] * (avi->n + 1) + a] = s->number[v];
-    }
-  if (is_edge) p->edge = p->nodes;
-}
+/* ---- edges ---- */
 
-/* List the cells of others at a node, or without a list count them. */
-static int64_t list_foreign_of(const survey *s, int k, int v, int *foreign)
+/* Find the cells of other parts at the nodes of a cell, each of them once. */
+static int64_t find_foreign(const survey *s, int64_t c)
 {
   const dvi__solid_avi *avi = s->avi;
   int64_t count = 0;
-  for (int64_t j = avi->cell_start[v]; j < avi->cell_start[v + 1]; j++) {
-    if (s->owner[avi->cell_of[j]] == k) continue;
-    if (foreign != NULL) foreign[count] = avi->cell_of[j];
+  for (int a = 0; a <= avi->n; a++) {
+    const int v = avi->cell[c].corner[a];
+    for (int64_t j = avi->cell_start[v]; j < avi->cell_start[v + 1]; j++) {
+      const int other = avi->cell_of[j];
+      if (s->owner[other] == s->owner[c] || s->seen[other] == c) continue;
+      s->seen[other] = (int)c;
+      s->found[count++] = other;
+    }
+  }
+  return count;
+}
+
+/* Whether a cell c that waits for all others found waits for `cell`, too. Cells of a part and class
+ * act in the order of their numbers, those after c last in the step before. */
+static int is_implied(const survey *s, int64_t c, int cell, int64_t count)
+{
+  const dvi__solid_avi *avi = s->avi;
+  for (const int *other = s->found; other < s->found + count; other++)
+    if (*other > cell && (*other < c) == (cell < c) && s->owner[*other] == s->owner[cell] &&
+        avi->cell[*other].step == avi->cell[cell].step)
+      return !avi->is_free;
+  return 0;
+}
+
+/* List the edges that a cell has to wait for, or without a list count them. */
+static int64_t list_foreign(const survey *s, int64_t c, int *foreign)
+{
+  const int64_t found = find_foreign(s, c);
+  int64_t count = 0;
+  for (int64_t k = 0; k < found; k++) {
+    if (is_implied(s, c, s->found[k], found)) continue;
+    if (foreign != NULL) foreign[count] = s->avi->cell[s->found[k]].edge;
     count++;
   }
   return count;
 }
 
-/* List those of the edge, whose nodes are met in the order of their numbers. */
-static void list_foreign(const survey *s, int k)
+static void forget_seen(const survey *s)
 {
-  const dvi__solid_avi *avi = s->avi;
-  dvi__solid_part *p = s->all->part + k;
-  int64_t count = 0, node = 0;
-  for (int64_t i = 0; i < p->count; i++)
-    for (int a = 0; a <= avi->n; a++) {
-      const int64_t c = p->cell[i];
-      if (node == p->edge || s->all->corner[c * (avi->n + 1) + a] != node) continue;
-      p->foreign_start[node++] = count;
-      count += list_foreign_of(s, k, avi->cell[c].corner[a],
-                               p->foreign != NULL ? p->foreign + count : NULL);
-    }
-  p->foreign_start[p->edge] = count;
+  for (int64_t c = 0; c < s->avi->active; c++) s->seen[c] = -1;
 }
 
-static void mark_edge(const survey *s, const dvi__solid_part *p)
+/* Number the cells at edges. Returns for how many foreign ones they wait. */
+static int64_t number_edges(const survey *s)
 {
-  for (int64_t v = 0; v < s->avi->vertices; v++)
-    if (s->user[v] == SEVERAL) p->mark[v / 64] |= UINT64_C(1) << v % 64;
+  int64_t foreign = 0;
+  forget_seen(s);
+  for (int64_t c = 0; c < s->avi->active; c++) {
+    const int64_t count = list_foreign(s, c, NULL);
+    if (count > 0) s->avi->cell[c].edge = (int)s->all->edges++;
+    foreign += count;
+  }
+  return foreign;
 }
 
-static dvi_status make_edge(const survey *s, int k)
+static void list_edges(const survey *s)
 {
-  dvi__solid_part *p = s->all->part + k;
-  number_nodes(s, k, 1);
-  number_nodes(s, k, 0);
-  p->room = 2 * p->count;
-  p->hold = DVI_NEW(dvi__part_hold, p->nodes);
-  p->mark = DVI_NEW(uint64_t, s->avi->vertices / 64 + 1);
-  p->late = DVI_NEW(dvi__part_event, p->room);
-  p->later = DVI_NEW(dvi__part_event, p->room);
-  p->foreign_start = DVI_NEW(int64_t, p->edge + 1);
-  if (!p->hold || !p->mark || !p->late || !p->later || !p->foreign_start) return no_memory(s->avi);
-  list_foreign(s, k);
-  p->foreign = DVI_NEW(int, p->foreign_start[p->edge]);
-  if (p->foreign == NULL) return no_memory(s->avi);
-  list_foreign(s, k);
-  mark_edge(s, p);
+  dvi__solid_parts *all = s->all;
+  int64_t count = 0;
+  forget_seen(s);
+  for (int64_t c = 0; c < s->avi->active; c++) {
+    const int edge = s->avi->cell[c].edge;
+    if (edge < 0) continue;
+    all->cell_at[edge] = (int)c;
+    all->foreign_start[edge] = count;
+    count += list_foreign(s, c, all->foreign + count);
+  }
+  all->foreign_start[all->edges] = count;
+}
+
+static dvi_status make_edges(const survey *s)
+{
+  dvi__solid_parts *all = s->all;
+  const int64_t foreign = number_edges(s);
+  all->cell_at = DVI_NEW(int, all->edges);
+  all->foreign_start = DVI_NEW(int64_t, all->edges + 1);
+  all->foreign = DVI_NEW(int, foreign);
+  all->after = DVI_NEW(_Atomic double, all->edges);
+  if (!all->cell_at || !all->foreign_start || !all->foreign || !all->after)
+    return no_memory(s->avi);
+  list_edges(s);
   return DVI_OK;
 }
+
+/* ---- create ---- */
 
 static dvi_status make_calendar(const dvi__solid_avi *avi, dvi__solid_part *p)
 {
@@ -222,76 +146,52 @@ static dvi_status make_calendar(const dvi__solid_avi *avi, dvi__solid_part *p)
   return dvi__calendar_create(p->count, longest, rate, DVI__CELL_AHEAD, &p->calendar);
 }
 
-/* ---- create ---- */
-
 void dvi__solid_parts_destroy(dvi__solid_parts **parts)
 {
   dvi__solid_parts *all = *parts;
   if (all == NULL) return;
   dvi__team_destroy(&all->team);
-  for (int k = 0; k < all->count && all->part != NULL; k++) {
-    dvi__solid_part *p = all->part + k;
-    dvi__calendar_destroy(&p->calendar);
-    dvi__release(p->hold);
-    dvi__release(p->mark);
-    dvi__release(p->foreign_start);
-    dvi__release(p->foreign);
-    dvi__release(p->late);
-    dvi__release(p->later);
-  }
+  for (int k = 0; k < all->count && all->part != NULL; k++)
+    dvi__calendar_destroy(&all->part[k].calendar);
   dvi__release(all->part);
   dvi__release(all->cell);
-  dvi__release(all->corner);
+  dvi__release(all->cell_at);
+  dvi__release(all->foreign_start);
+  dvi__release(all->foreign);
   dvi__release(all->after);
   dvi__release(all);
   *parts = NULL;
 }
 
-static dvi_status fill(const survey *s)
+static dvi_status fill(const survey *s, const dvi__solid_plan *plan)
 {
   const int count = s->all->count;
-  if (count > 1) share_out(s);
+  if (count > 1) share_out(s, plan);
   list_cells(s);
   for (int k = 0; k < count && s->avi->is_free; k++)
     DVI_TRY(make_calendar(s->avi, s->all->part + k));
   if (count == 1) return DVI_OK;
-  for (int k = 0; k < count; k++) DVI_TRY(make_edge(s, k));
+  DVI_TRY(make_edges(s));
   return dvi__team_create(count, &s->all->team);
 }
 
-/* Returns 0 without memory. */
-static int allocate(const survey *s)
+dvi_status dvi__solid_parts_create(const dvi__solid_plan *plan, dvi__solid_avi *avi)
 {
-  const dvi__solid_avi *avi = s->avi;
-  dvi__solid_parts *all = s->all;
-  const int64_t shared = all->count > 1 ? avi->active : 0;
-  all->part = DVI_NEW(dvi__solid_part, all->count);
-  all->cell = DVI_NEW(int, avi->active);
-  all->corner = DVI_NEW(int, shared *(avi->n + 1));
-  all->after = DVI_NEW(_Atomic double, shared);
-  return all->part && all->cell && all->corner && all->after && s->row && s->owner && s->user &&
-         s->number && s->seen;
-}
-
-dvi_status dvi__solid_parts_create(dvi__solid_avi *avi)
-{
-  const int64_t active = avi->active, vertices = avi->vertices;
   dvi__solid_parts *all = avi->parts = DVI_NEW(dvi__solid_parts, 1);
   if (all == NULL) return no_memory(avi);
-  all->count = (int)(avi->threads < active ? avi->threads : active);
+  all->count = avi->threads < plan->slabs ? avi->threads : plan->slabs;
+  all->part = DVI_NEW(dvi__solid_part, all->count);
+  all->cell = DVI_NEW(int, avi->active);
   const survey s = {.avi = avi,
                     .all = all,
-                    .row = DVI_NEW(placed, active),
-                    .owner = DVI_NEW(int, active),
-                    .user = DVI_NEW(int, vertices),
-                    .number = DVI_NEW(int, vertices),
-                    .seen = DVI_NEW(int, vertices)};
-  const dvi_status status = allocate(&s) ? fill(&s) : no_memory(avi);
-  dvi__release(s.row);
+                    .owner = DVI_NEW(int, avi->active),
+                    .seen = DVI_NEW(int, avi->active),
+                    .found = DVI_NEW(int, avi->active)};
+  const int has_memory = all->part && all->cell && s.owner && s.seen && s.found;
+  const dvi_status status = has_memory ? fill(&s, plan) : no_memory(avi);
   dvi__release(s.owner);
-  dvi__release(s.user);
-  dvi__release(s.number);
   dvi__release(s.seen);
+  dvi__release(s.found);
   if (status != DVI_OK) dvi__solid_parts_destroy(&avi->parts);
   return status;
 }

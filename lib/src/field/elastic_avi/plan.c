@@ -16,6 +16,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "field/elastic_avi/slabs.h"
 #include "march/kind.h"
 
 static const double rounding = 1e-12;
@@ -25,6 +26,8 @@ void dvi__solid_plan_clear(dvi__solid_plan *plan)
   dvi__release(plan->bound);
   dvi__release(plan->step);
   dvi__release(plan->class);
+  dvi__release(plan->slab);
+  dvi__release(plan->turn);
   *plan = (dvi__solid_plan){0};
 }
 
@@ -131,13 +134,15 @@ dvi_status dvi__solid_plan_make(const dvi_elastic *solid, const dvi__solid_reque
 {
   *plan = (dvi__solid_plan){.bound = DVI_NEW(double, solid->cells),
                             .step = DVI_NEW(double, solid->cells),
-                            .class = DVI_NEW(int, solid->cells)};
-  const dvi_status status =
-      plan->bound && plan->step && plan->class ? choose(solid, request, plan)
-                                               : dvi__fail(
-                                                     DVI_NO_MEMORY,
-                                                     "avi: no memory for the steps of %lld cells",
-                                                     (long long)solid->cells);
+                            .class = DVI_NEW(int, solid->cells),
+                            .slab = DVI_NEW(int, solid->cells),
+                            .turn = DVI_NEW(uint8_t, solid->cells)};
+  const int has_memory = plan->bound && plan->step && plan->class && plan->slab && plan->turn;
+  dvi_status status = has_memory
+                          ? choose(solid, request, plan)
+                          : dvi__fail(DVI_NO_MEMORY, "avi: no memory for the steps of %lld cells",
+                                      (long long)solid->cells);
+  if (status == DVI_OK) status = dvi__solid_slabs_make(solid, request, plan);
   if (status != DVI_OK) dvi__solid_plan_clear(plan);
   return status;
 }

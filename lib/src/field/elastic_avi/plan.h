@@ -18,7 +18,9 @@ typedef struct dvi__solid_plan {
   double *bound; /* [cells] longest stable step of a cell by itself. Infinite without events */
   double *step;  /* [cells] infinite without events */
   int *class;    /* [cells] log2 of the step beside the shortest one. 0 for free steps */
-  int classes;
+  int *slab;     /* [cells] below `slabs` */
+  uint8_t *turn; /* [cells] 0 to 2, the order in a class */
+  int classes, slabs;
   double shortest, longest, tightest; /* steps, and the least bound */
   int64_t tightest_cell;
 } dvi__solid_plan;
