@@ -1,4 +1,3 @@
-/* labels: unit slow */
 /* Asynchronous steps on several threads: the bits are those of one. */
 #include <math.h>
 #include <stdio.h>

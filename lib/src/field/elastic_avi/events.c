@@ -46,7 +46,7 @@ static void open_slot(const dvi__solid_avi *avi, dvi__solid_part *p, int64_t slo
   p->due = p->class_end[dvi__solid_class_of_slot(avi, slot)];
 }
 
-/* Give the next event that was never put off. Returns 0 if there is none up to the end. */
+/* Give the next event of a part. Returns 0 if there is none up to the end. */
 static int find_next(const run *r, dvi__solid_part *p, part_event *event)
 {
   if (r->avi->is_free) {
