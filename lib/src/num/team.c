@@ -10,8 +10,8 @@
 #include "core/status.h"
 
 /* Looks at the work before a thread sleeps. A thread shall not sleep between two steps that follow
- * each other, because waking it takes longer than this many looks. The last of them are tens
- * of microseconds apart. A thread that yields instead, beside other programs, loses a whole slice of
+ * each other, because waking it takes longer than this many looks. The last of them are tens of
+ * microseconds apart. A thread that yields instead, beside other programs, loses a whole slice of
  * time with each look. */
 enum { LOOKS = 1000, LOOKS_BEFORE_DOZING = 400 };
 
