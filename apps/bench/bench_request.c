@@ -106,8 +106,7 @@ static const char *const details[] = {
     "the\n"
     "selection, explicit methods are left out then. --time-transform none puts the same methods "
     "beside them with steps of time.\n",
-    "--against: cvode (cvode-adams), cvode-bdf, arkode and ida of SUNDIALS; gsl is GSL's rk8pd, in "
-    "builds with DVI_GSL.\n"
+    "--against: cvode (cvode-adams), cvode-bdf, arkode and ida of SUNDIALS.\n"
     "They run at tolerances from 1e-4 to 1e-12, and down to 1e-14 if --at asks for more. Every "
     "integrator gets the same\n"
     "callbacks: batches, or one point a call with --one-point (peers always ask for one point).\n",
@@ -193,7 +192,7 @@ static const option command_options[] = {
     {.name = "against",
      OPTION_AT(bench_request, against),
      .value = "CODES",
-     .help = "codes beside them: of cvode,cvode-bdf,arkode,ida,gsl"},
+     .help = "codes beside them: of cvode,cvode-bdf,arkode,ida"},
     {.name = "judge",
      OPTION_AT(bench_request, judged_by),
      .value = "WHO",
@@ -254,7 +253,7 @@ static const option command_options[] = {
 
 static const command_line command = {
     .name = "bench",
-    .synopsis = "PROBLEM|SCENE.yaml [--method SPEC ...] [--against cvode,arkode,ida,gsl] [OPTIONS]",
+    .synopsis = "PROBLEM|SCENE.yaml [--method SPEC ...] [--against cvode,arkode,ida] [OPTIONS]",
     .operand = "PROBLEM",
     .summary = "Measure speed against error, of methods and of other codes, all in one run; or "
                "the cost of a step against size.\n",

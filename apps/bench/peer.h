@@ -1,5 +1,4 @@
-/** The codes that are run beside the methods, which are those of SUNDIALS, and GSL's rk8pd in a
- * build that has it. */
+/** The codes that are run beside the methods, which are those of SUNDIALS. */
 #ifndef PEER_H
 #define PEER_H
 #include "cli/options.h"
@@ -30,7 +29,4 @@ dvi_status peer_solve(int peer, const problem *scene, double t_end, double toler
 
 /** Return the reason why the last peer_solve failed. */
 const char *peer_error(void);
-
-/** Return the version of GSL, or NULL in a build without it. */
-const char *peer_gsl_version(void);
 #endif

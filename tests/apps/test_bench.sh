@@ -186,31 +186,6 @@ same shape shape--one-point 'shapes'
 expect 0 'sizes by one point' bench fpu --method galerkin --scale ell=5,50 --rounds 1 --one-point
 says out '^callbacks: one point a call' 'the shape is said with sizes'
 
-# GSL, in a build that has it.
-if "$dvi" --version | grep -q GSL; then
-  "$dvi" --version | grep -q GPL || fail 'whoever has GSL is told of its licence'
-  for problem in kepler double-pendulum outer-solar; do
-    expect 0 "GSL on $problem" bench $problem --method midpoint --levels 1 --rounds 1 \
-      --against gsl --at 1e-8 --csv -
-    awk -F, -v name=$problem '
-      $1 == "gsl-rk8pd" && $2 == name && $4 > 0 && $4 < 1e-6 && $5 > 0 && $7 > $10 { good++ }
-      END { exit good < 2 }' out || fail "GSL on $problem"
-  done
-  says err '^libraries: .*GSL [0-9]' 'the version of GSL'
-  awk -F, '$3 == "tol=1e-06" { a = $4 } $3 == "tol=1e-10" { b = $4 } END { exit !(b < a / 100) }' \
-    out || fail 'GSL obeys its tolerance'
-  expect 0 'GSL backward' bench kepler --t-end -3 --method verlet --levels 1 --rounds 1 \
-    --against gsl --csv -
-  awk -F, '$1 == "gsl-rk8pd" && $4 < 1e-9 { good++ } END { exit good < 1 }' out ||
-    fail 'GSL backward'
-  expect 0 'GSL gives up' bench kepler --set e=0.9999999999 --method verlet --levels 1 --rounds 1 \
-    --against gsl
-  says err 'left out gsl-rk8pd at tol=1e-04: gsl-rk8pd: stopped at t = .* before 1.25' \
-    'where GSL gives up'
-else
-  expect 2 'no GSL' bench kepler --method verlet --against gsl
-  says err 'built without GSL; configure with -DDVI_GSL=ON (Debian.s package: libgsl-dev)' 'no GSL'
-fi
 expect 2 'an unknown peer' bench kepler --method verlet --against cvod
 expect 2 'a peer twice' bench kepler --method verlet --against cvode,cvode-adams
 expect 0 'axes' bench kepler --method verlet --against ida --levels 2 --rounds 1 --plot axes.svg \
