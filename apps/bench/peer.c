@@ -25,9 +25,14 @@ static int peer_read(const char *text, size_t length, peer_list *list)
   int peer = 0;
   while (peer_name(peer) != NULL && !peer_is_named(peer_name(peer), text, length)) peer++;
   const char *name = peer_name(peer);
+  if (name == NULL && peer_is_named("bare", text, length)) {
+    if (list->bare) return usage_error("bench: --against names bare twice");
+    list->bare = true;
+    return DONE;
+  }
   if (name == NULL)
     return usage_error(
-        "bench: --against knows cvode (cvode-adams), cvode-bdf, arkode and ida, not '%.*s'",
+        "bench: --against knows cvode (cvode-adams), cvode-bdf, arkode, ida and bare, not '%.*s'",
         (int)length, text);
   for (int i = 0; i < list->count; i++)
     if (list->peer[i] == peer) return usage_error("bench: --against names %s twice", name);
@@ -39,7 +44,7 @@ static int peer_read(const char *text, size_t length, peer_list *list)
 int peers_read(const words *against, peer_list *list)
 {
   int code = DONE;
-  list->count = 0;
+  *list = (peer_list){0};
   for (int i = 0; i < against->count; i++)
     for (const char *text = against->word[i]; text != NULL && code == DONE;) {
       const size_t length = strcspn(text, ",");

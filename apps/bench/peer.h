@@ -1,6 +1,8 @@
-/** The codes that are run beside the methods, which are those of SUNDIALS. */
+/** The codes that are run beside the methods, which are those of SUNDIALS and bare loops. */
 #ifndef PEER_H
 #define PEER_H
+#include <stdbool.h>
+
 #include "cli/options.h"
 #include "problem.h"
 
@@ -10,12 +12,13 @@ enum { PEERS_MAX = 16 };
 typedef struct peer_list {
   int count;
   int peer[PEERS_MAX];
+  bool bare; /**< bare loops beside methods of the same steps (bare.h) */
 } peer_list;
 
 /** Return the name of a peer, 0 to PEERS_MAX-1, in tables, or NULL beyond the last one. */
 const char *peer_name(int peer);
 
-/** Read names such as "cvode,ida", each once. The part before a name's dash is enough. Returns
+/** Read names such as "cvode,bare", each once. The part before a name's dash is enough. Returns
  * DONE, or complains and returns USAGE. */
 int peers_read(const words *against, peer_list *list);
 
