@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "cli/command.h"
-#include "bench/peer.h"
 #include "cli/signals.h"
 #include "cli/spelling.h"
 
@@ -107,13 +106,9 @@ static const char *subcommand_at(int k, const void *list)
   return ((const subcommand *)list)[k].name;
 }
 
-/* Print the versions. A command that holds GSL is under GSL's licence, and says so. */
 static void print_version(void)
 {
-  (void)printf("dvi %s (SUNDIALS %s", dvi_version(), dvi_reference_version());
-  if (peer_gsl_version() != NULL)
-    (void)printf(", GSL %s: this binary is under the GPL, version 3 or later", peer_gsl_version());
-  (void)printf(")\n");
+  (void)printf("dvi %s (SUNDIALS %s)\n", dvi_version(), dvi_reference_version());
 }
 
 static int dispatch(int argc, char **argv)

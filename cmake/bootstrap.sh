@@ -10,8 +10,7 @@ set -eu
 
 packages="gcc g++ libc6-dev make cmake pkg-config libsundials-dev libsuitesparse-dev liblapack-dev
   libarpack2-dev libyaml-dev check gnuplot-nox"
-lint_packages="clang clang-tidy clang-format cppcheck doxygen valgrind libc6-dbg libclang-rt-dev
-  libgsl-dev"
+lint_packages="clang clang-tidy clang-format cppcheck doxygen valgrind libc6-dbg libclang-rt-dev"
 
 usage() {
   cat >&2 <<'END'
@@ -53,7 +52,7 @@ explain_by_hand() {
 bootstrap: this system is neither Debian 12 or later nor Ubuntu 24.04 or later: please install what
 is needed yourself: a C11 compiler, make, CMake 3.22 or later, pkg-config, SUNDIALS 6.4 to 7 with
 KLU, SuiteSparse, LAPACK, ARPACK, libyaml, Check, gnuplot and, for a test, a C++ compiler;
-for lint also clang, clang-tidy, clang-format, cppcheck, Doxygen, valgrind and GSL. On Debian these
+for lint also clang, clang-tidy, clang-format, cppcheck, Doxygen and valgrind. On Debian these
 packages are called
   $packages
   $lint_packages

@@ -8,9 +8,12 @@ install(DIRECTORY lib/include/dvi DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
 install(TARGETS dvi dvi_scene EXPORT dviTargets)
 install(TARGETS dvi_static EXPORT dviStaticTargets)
 set_target_properties(dvi_scene PROPERTIES INSTALL_RPATH "$ORIGIN")
+# A SUNDIALS from a prefix is found after the installation, too.
+set_target_properties(dvi PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)
 if(TARGET dvi_command)
   file(RELATIVE_PATH to_libraries "${CMAKE_INSTALL_FULL_BINDIR}" "${CMAKE_INSTALL_FULL_LIBDIR}")
-  set_target_properties(dvi_command PROPERTIES INSTALL_RPATH "$ORIGIN/${to_libraries}")
+  set_target_properties(dvi_command PROPERTIES INSTALL_RPATH "$ORIGIN/${to_libraries}"
+                                               INSTALL_RPATH_USE_LINK_PATH ON)
   install(TARGETS dvi_command)
 endif()
 file(GLOB scenes CONFIGURE_DEPENDS apps/scenes/*.yaml apps/scenes/*/*.yaml)

@@ -3,7 +3,9 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "bench/bare.h"
 #include "bench/machine.h"
+#include "bench/sundials_build.h"
 #include "cli/command.h"
 
 enum { SUBJECT_SIZE = 96 };
@@ -25,6 +27,33 @@ static void print_head(FILE *stream, const bench_results *results)
   if (results->one_point) (void)fprintf(stream, "callbacks: one point a call\n");
 }
 
+/* Compare the steps of methods with those of bare loops, at each step that both took. */
+static void print_bare(FILE *stream, const work *w)
+{
+  for (int first = 0; first < w->jobs; first = work_group_end(w, first)) {
+    const whole_job *loop = w->job[first].subject->user;
+    double ratio[WORK_LONGER_MAX + WORK_LEVELS_MAX];
+    int count = 0;
+    const char *name = NULL;
+    for (int i = first; i < work_group_end(w, first) && loop->degree > 0; i++)
+      for (int k = 0; k < first; k++) {
+        const whole_job *job = w->job[k].subject->user;
+        if (job->method == NULL || bare_degree(job->method) != loop->degree ||
+            w->job[k].level.refinement != w->job[i].level.refinement)
+          continue;
+        name = w->job[k].subject->name;
+        ratio[count++] = (w->job[k].seconds.median - w->job[k].preparation_seconds) /
+                         (w->job[i].seconds.median - w->job[i].preparation_seconds);
+      }
+    if (count == 0) continue;
+    const spread of = samples_spread(count, ratio);
+    (void)fprintf(stream,
+                  "%s over %s at equal steps, without creation: %.2f (least %.2f, quartiles %.2f, "
+                  "%.2f)\n",
+                  name, w->job[first].subject->name, of.median, of.least, of.lower, of.upper);
+  }
+}
+
 /* Name the program that users of Yee's method compare with. */
 static void print_meep(FILE *stream, const bench_results *results)
 {
@@ -43,6 +72,7 @@ static void print_notes(FILE *stream, const bench_results *results)
   (void)fprintf(stream, "judge at t = %g: %s, error %.1e\n", results->motion->t_end,
                 results->motion->judge->words, results->motion->judge->error);
   print_meep(stream, results);
+  print_bare(stream, results->work);
   (void)fprintf(stream,
                 "cpu_seconds: process time of a whole job, median of %ld interleaved rounds; "
                 "cpu_lower, cpu_upper: quartiles\n",
@@ -51,13 +81,7 @@ static void print_notes(FILE *stream, const bench_results *results)
                 "create_seconds: its part that creates the integrator; of peers not known\n");
   (void)fprintf(stream, "energy_error: methods: largest over the run; peers: largest of %d times\n",
                 (int)ENERGY_TIMES);
-  if (!has_sundials(results->work)) return;
-  (void)fprintf(stream,
-                "SUNDIALS %s. Caution: Debian's packages of SUNDIALS are built without "
-                "optimisation; its codes linked\n",
-                dvi_reference_version());
-  (void)fprintf(stream, "from them are several times slower than they can be. Say which build a "
-                        "ratio was measured against.\n");
+  if (has_sundials(results->work)) sundials_build_print(stream);
 }
 
 static bool plot_jobs(const bench_results *results, const result_table *rows, const plot_axes *axes,

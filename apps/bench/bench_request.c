@@ -106,9 +106,13 @@ static const char *const details[] = {
     "the\n"
     "selection, explicit methods are left out then. --time-transform none puts the same methods "
     "beside them with steps of time.\n",
-    "--against: cvode (cvode-adams), cvode-bdf, arkode and ida of SUNDIALS; gsl is GSL's rk8pd, in "
-    "builds with DVI_GSL.\n"
-    "They run at tolerances from 1e-4 to 1e-12, and down to 1e-14 if --at asks for more. Every "
+    "--against: cvode (cvode-adams), cvode-bdf, arkode and ida of SUNDIALS, and bare.\n"
+    "bare is a loop of Gauss' method, with the steps, iterations and callbacks of each "
+    "galerkin:degree=S, but without any check,\n"
+    "retry or compensated sum, for constant masses and potentials alone. What the checks cost is "
+    "printed, at equal steps.\n"
+    "The others run at tolerances from 1e-4 to 1e-12, and down to 1e-14 if --at asks for more. "
+    "Every "
     "integrator gets the same\n"
     "callbacks: batches, or one point a call with --one-point (peers always ask for one point).\n",
     "--judge: exact (the exact solution); stored (a quadruple-precision result, for the problem's "
@@ -162,9 +166,12 @@ static const char *const details[] = {
     "on one thread, and gain is their ratio.\n",
     "Processor, compiler and flags are printed, and the time of 1e8 dependent multiplications, "
     "measured once a round:\n"
-    "it tells times of two machines or two hours apart. Debian's packages of SUNDIALS are built "
-    "without optimisation: its\n"
-    "codes are several times slower in them than they can be.\n",
+    "it tells times of two machines or two hours apart. Beside codes of SUNDIALS the report has "
+    "its "
+    "version, its folder, and\n"
+    "whether it was compiled with optimisation, which is measured. Debian's package 6.4.1 was not, "
+    "and its codes are several\n"
+    "times slower than they can be. CMAKE_PREFIX_PATH chooses another build of SUNDIALS.\n",
     "Examples:\n"
     "  dvi bench kepler --against cvode,arkode,ida --at 1e-6,1e-9 --plot bench.svg\n"
     "  dvi bench outer-solar --t-end 500000 --method galerkin:degree=8 --method "
@@ -193,7 +200,7 @@ static const option command_options[] = {
     {.name = "against",
      OPTION_AT(bench_request, against),
      .value = "CODES",
-     .help = "codes beside them: of cvode,cvode-bdf,arkode,ida,gsl"},
+     .help = "codes beside them: of cvode,cvode-bdf,arkode,ida,bare"},
     {.name = "judge",
      OPTION_AT(bench_request, judged_by),
      .value = "WHO",
@@ -254,7 +261,7 @@ static const option command_options[] = {
 
 static const command_line command = {
     .name = "bench",
-    .synopsis = "PROBLEM|SCENE.yaml [--method SPEC ...] [--against cvode,arkode,ida,gsl] [OPTIONS]",
+    .synopsis = "PROBLEM|SCENE.yaml [--method SPEC ...] [--against cvode,arkode,ida] [OPTIONS]",
     .operand = "PROBLEM",
     .summary = "Measure speed against error, of methods and of other codes, all in one run; or "
                "the cost of a step against size.\n",

@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bench/peer.h"
 #include "study/clock.h"
 
 /* A sanitizer has a malloc of its own, which the C library does not know. */
@@ -61,9 +60,7 @@ void machine_print(FILE *stream)
   read_processor(name);
   (void)fprintf(stream, "processor: %s\n", name);
   (void)fprintf(stream, "compiler: %s, %s\n", DVI_BUILD_COMPILER, DVI_BUILD_FLAGS);
-  (void)fprintf(stream, "libraries: dvi %s, SUNDIALS %s", dvi_version(), dvi_reference_version());
-  if (peer_gsl_version() != NULL) (void)fprintf(stream, ", GSL %s", peer_gsl_version());
-  (void)fputc('\n', stream);
+  (void)fprintf(stream, "libraries: dvi %s, SUNDIALS %s\n", dvi_version(), dvi_reference_version());
 }
 
 double machine_multiplications(void)

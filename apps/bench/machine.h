@@ -5,8 +5,8 @@
 
 #include "study/samples.h"
 
-/** Print processor, compiler with its flags, and the versions of dvi, SUNDIALS and, if present,
- * GSL, in a line each. */
+/** Print processor, compiler with its flags, and the versions of dvi and SUNDIALS, in a line
+ * each. */
 void machine_print(FILE *stream);
 
 /** Measure the process time in seconds of 1e8 multiplications, each of which waits for the one

@@ -4,39 +4,12 @@
 #include <string.h>
 
 #include "cli/command.h"
-#ifdef DVI_GSL
-#include "bench/rk8pd.h"
-#endif
-
-static const char gsl_name[] = "gsl-rk8pd";
 
 static char reason[512];
 
-#ifdef DVI_GSL
-/* Return GSL's number, which follows those of SUNDIALS' codes. They have the library's numbers. */
-static int gsl_number(void)
-{
-  int count = 0;
-  while (dvi_reference_name((dvi_reference_code)count) != NULL) count++;
-  return count;
-}
-#endif
-
 const char *peer_name(int peer)
 {
-#ifdef DVI_GSL
-  if (peer == gsl_number()) return gsl_name;
-#endif
   return dvi_reference_name((dvi_reference_code)peer);
-}
-
-const char *peer_gsl_version(void)
-{
-#ifdef DVI_GSL
-  return rk8pd_version();
-#else
-  return NULL;
-#endif
 }
 
 /* Compare a peer's name. "cvode" alone is its Adams formula, the better one for problems that are
@@ -52,13 +25,14 @@ static int peer_read(const char *text, size_t length, peer_list *list)
   int peer = 0;
   while (peer_name(peer) != NULL && !peer_is_named(peer_name(peer), text, length)) peer++;
   const char *name = peer_name(peer);
-  if (name == NULL && peer_is_named(gsl_name, text, length))
-    return usage_error("bench: --against gsl: this dvi was built without GSL; configure with "
-                       "-DDVI_GSL=ON (Debian's package: libgsl-dev); "
-                       "a binary built so is under the GPL");
+  if (name == NULL && peer_is_named("bare", text, length)) {
+    if (list->bare) return usage_error("bench: --against names bare twice");
+    list->bare = true;
+    return DONE;
+  }
   if (name == NULL)
     return usage_error(
-        "bench: --against knows cvode (cvode-adams), cvode-bdf, arkode, ida and gsl, not '%.*s'",
+        "bench: --against knows cvode (cvode-adams), cvode-bdf, arkode, ida and bare, not '%.*s'",
         (int)length, text);
   for (int i = 0; i < list->count; i++)
     if (list->peer[i] == peer) return usage_error("bench: --against names %s twice", name);
@@ -70,7 +44,7 @@ static int peer_read(const char *text, size_t length, peer_list *list)
 int peers_read(const words *against, peer_list *list)
 {
   int code = DONE;
-  list->count = 0;
+  *list = (peer_list){0};
   for (int i = 0; i < against->count; i++)
     for (const char *text = against->word[i]; text != NULL && code == DONE;) {
       const size_t length = strcspn(text, ",");
@@ -89,10 +63,6 @@ dvi_status peer_solve(int peer, const problem *scene, double t_end, double toler
   memcpy(q, scene->q, (size_t)scene->nq * sizeof *q);
   memcpy(p, scene->p, (size_t)scene->nv * sizeof *p);
   if (report == NULL) report = &unread;
-#ifdef DVI_GSL
-  if (peer == gsl_number())
-    return rk8pd_solve(scene, t_end, tolerance, q, p, report, reason, sizeof reason);
-#endif
   const dvi_status status = dvi_reference_solve(scene->system, 0.0, t_end, q, p, &options, report);
   if (status != DVI_OK) (void)snprintf(reason, sizeof reason, "%s", dvi_last_error());
   return status;

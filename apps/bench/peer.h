@@ -1,7 +1,8 @@
-/** The codes that are run beside the methods, which are those of SUNDIALS, and GSL's rk8pd in a
- * build that has it. */
+/** The codes that are run beside the methods, which are those of SUNDIALS and bare loops. */
 #ifndef PEER_H
 #define PEER_H
+#include <stdbool.h>
+
 #include "cli/options.h"
 #include "problem.h"
 
@@ -11,12 +12,13 @@ enum { PEERS_MAX = 16 };
 typedef struct peer_list {
   int count;
   int peer[PEERS_MAX];
+  bool bare; /**< bare loops beside methods of the same steps (bare.h) */
 } peer_list;
 
 /** Return the name of a peer, 0 to PEERS_MAX-1, in tables, or NULL beyond the last one. */
 const char *peer_name(int peer);
 
-/** Read names such as "cvode,ida", each once. The part before a name's dash is enough. Returns
+/** Read names such as "cvode,bare", each once. The part before a name's dash is enough. Returns
  * DONE, or complains and returns USAGE. */
 int peers_read(const words *against, peer_list *list);
 
@@ -30,7 +32,4 @@ dvi_status peer_solve(int peer, const problem *scene, double t_end, double toler
 
 /** Return the reason why the last peer_solve failed. */
 const char *peer_error(void);
-
-/** Return the version of GSL, or NULL in a build without it. */
-const char *peer_gsl_version(void);
 #endif

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "bench/bare.h"
 #include "bench/peer.h"
 #include "cli/command.h"
 #include "mechanics/field_motion.h"
@@ -169,6 +170,52 @@ static dvi_status peer_repeat(void *user, double tolerance, double *preparation)
                     q + job->motion.scene->nq, NULL);
 }
 
+/* Run a bare loop from the start. *preparation grows by the seconds of its creation. */
+static dvi_status bare_solve(const whole_job *job, double h, long steps, double *preparation,
+                             long *evaluations)
+{
+  const double began = cpu_now();
+  bare *loop = bare_create(job->motion.scene, job->degree, h);
+  *preparation += cpu_now() - began;
+  if (loop == NULL) return DVI_NO_MEMORY;
+  *evaluations = bare_run(loop, steps, job->room, job->room + job->motion.scene->nq);
+  bare_destroy(loop);
+  return DVI_OK;
+}
+
+/* Run a bare loop from the start to the steps nearest to each of the ENERGY_TIMES. */
+static dvi_status bare_level(void *user, double steps, study_level *level)
+{
+  const whole_job *job = user;
+  const problem *scene = job->motion.scene;
+  long evaluations = 0;
+  dvi_status status = DVI_OK;
+  level->further[ENERGY] = 0.0;
+  level->length = job->span / steps;
+  for (int k = 1; k <= ENERGY_TIMES && status == DVI_OK; k++) {
+    const long made = lround(steps * k / ENERGY_TIMES);
+    double change = 0.0, preparation = 0.0;
+    const double began = cpu_now();
+    status = bare_solve(job, level->length, made, &preparation, &evaluations);
+    level->seconds = cpu_now() - began;
+    if (status == DVI_OK)
+      status = energy_change(scene, level->length * (double)made, job->room, job->room + scene->nq,
+                             &change);
+    level->further[ENERGY] = fmax(level->further[ENERGY], change);
+  }
+  level->counted[EVALUATIONS] = (double)evaluations;
+  level->parts = steps;
+  level->error = judge_error(job->motion.judge, scene, job->room);
+  return status;
+}
+
+static dvi_status bare_repeat(void *user, double steps, double *preparation)
+{
+  const whole_job *job = user;
+  long evaluations;
+  return bare_solve(job, job->span / steps, lround(steps), preparation, &evaluations);
+}
+
 static void peer_setting(void *user, double tolerance, char *text, size_t size)
 {
   (void)user;
@@ -197,6 +244,21 @@ dvi_status whole_job_of_peer(whole_job *job, int peer, const judged_motion *moti
                                  .reason = peer_reason,
                                  .user = job};
   return job->room != NULL ? DVI_OK : DVI_NO_MEMORY;
+}
+
+dvi_status whole_job_of_bare(whole_job *job, int degree, const judged_motion *motion)
+{
+  const dvi_status status = whole_job_of_peer(job, -1, motion);
+  (void)snprintf(job->name, sizeof job->name, "bare:degree=%d", degree);
+  job->degree = degree;
+  job->span = motion->t_end;
+  job->subject.name = job->name;
+  job->subject.span = motion->t_end;
+  job->subject.run = bare_level;
+  job->subject.repeat = bare_repeat;
+  job->subject.setting = NULL;
+  job->subject.reason = NULL;
+  return status;
 }
 
 void whole_job_clear(whole_job *job)

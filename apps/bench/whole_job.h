@@ -1,24 +1,26 @@
 /** Whole jobs as subjects of studies. They are a method from the creation of its integrator to the
- * last step, and a peer at its tolerances. */
+ * last step, a bare loop at the same steps, and a peer at its tolerances. */
 #ifndef WHOLE_JOB_H
 #define WHOLE_JOB_H
 #include "load/pacing.h"
 #include "mechanics/motion_study.h"
 
-/** Number of times at which the energy of a peer's run is evaluated. They are evenly spaced, and
- * the last one is the end. */
-enum { ENERGY_TIMES = 8 };
+/** Number of times at which the energy of a run of a peer or a bare loop is evaluated. They are
+ * evenly spaced, and the last one is the end. */
+enum { ENERGY_TIMES = 8, BARE_NAME = 32 };
 
 /** The state of the callbacks. It must not be moved. */
 typedef struct whole_job {
   study_subject subject;
   judged_motion motion;
-  const char *method;  /**< specification of the method */
-  pacing how;          /**< monitor of its steps */
-  double span;         /**< span of its own time */
-  motion_study *study; /**< study that watches the energy, NULL once all levels are there */
-  int peer;            /**< number of a peer */
-  double *room;        /**< [2 n] owned, for a peer */
+  const char *method;   /**< specification of the method */
+  pacing how;           /**< monitor of its steps */
+  double span;          /**< span of its own time */
+  motion_study *study;  /**< study that watches the energy, NULL once all levels are there */
+  int peer;             /**< number of a peer, or -1 */
+  int degree;           /**< degree of a bare loop, or 0 */
+  char name[BARE_NAME]; /**< name of a bare loop */
+  double *room;         /**< [2 n] owned, for a peer or a bare loop */
 } whole_job;
 
 /** Titles and counts of whole jobs, namely energy_error and evaluations. */
@@ -30,6 +32,9 @@ void whole_job_of_method(whole_job *job, motion_study *study, const char *method
 
 /** Make the job of a peer. Its levels are tolerances. DVI_NO_MEMORY. */
 dvi_status whole_job_of_peer(whole_job *job, int peer, const judged_motion *motion);
+
+/** Make the job of a bare loop of Gauss' method. Its levels are steps. DVI_NO_MEMORY. */
+dvi_status whole_job_of_bare(whole_job *job, int degree, const judged_motion *motion);
 
 void whole_job_clear(whole_job *job);
 #endif

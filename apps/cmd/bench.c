@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "bench/bare.h"
 #include "bench/bench_report.h"
 #include "bench/bench_request.h"
 #include "cli/command.h"
@@ -44,7 +45,7 @@ static const double tolerances[] = {1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-13, 1e-14
 enum {
   TOLERANCES = sizeof tolerances / sizeof *tolerances,
   FREE_TOLERANCES = 5,
-  JOBS_MAX = WORDS_MAX * (WORK_LONGER_MAX + WORK_LEVELS_MAX) + PEERS_MAX * TOLERANCES
+  JOBS_MAX = 2 * WORDS_MAX * (WORK_LONGER_MAX + WORK_LEVELS_MAX) + PEERS_MAX * TOLERANCES
 };
 
 /* error that is good enough if no errors are asked for */
@@ -66,7 +67,7 @@ typedef struct bench {
   progress_line progress;
   int entries;
   entry entry[WORDS_MAX];
-  whole_job of_entry[WORDS_MAX], of_peer[PEERS_MAX];
+  whole_job of_entry[WORDS_MAX], of_bare[WORDS_MAX], of_peer[PEERS_MAX];
   work work;
 } bench;
 
@@ -89,6 +90,29 @@ static int bench_add_method(bench *b, int number)
   return status == DVI_OK ? DONE : library_error(status);
 }
 
+/* Add bare loops beside the methods that have the same steps, at all of their levels. */
+static int bench_add_bare(bench *b)
+{
+  const int methods = b->work.jobs;
+  dvi_status status = DVI_OK;
+  if (!bare_takes(b->scene)) {
+    complain("bench: left out bare: it is for constant masses, scalar or diagonal, and potentials "
+             "with gradients alone");
+    return DONE;
+  }
+  for (int i = 0; i < b->entries && status == DVI_OK; i++) {
+    const int degree = b->entry[i].how.transform == NULL ? bare_degree(b->entry[i].method) : 0;
+    if (degree == 0) continue;
+    status = whole_job_of_bare(&b->of_bare[i], degree, &b->motion);
+    for (int k = 0; k < methods && status == DVI_OK; k++)
+      if (b->work.job[k].subject == &b->of_entry[i].subject)
+        status = work_add(&b->work, &b->of_bare[i].subject, b->work.job[k].level.refinement);
+  }
+  if (b->work.jobs == methods)
+    complain("bench: left out bare: no method here is galerkin:degree=S alone");
+  return status == DVI_OK ? DONE : library_error(status);
+}
+
 /* Add a peer at its tolerances. A tolerance that it cannot keep is left out with a message. */
 static int bench_add_peer(bench *b, int number)
 {
@@ -103,6 +127,7 @@ static int bench_add_jobs(bench *b)
 {
   int code = DONE;
   for (int i = 0; i < b->entries && code == DONE; i++) code = bench_add_method(b, i);
+  if (b->request->peers.bare && code == DONE) code = bench_add_bare(b);
   for (int i = 0; i < b->request->peers.count && code == DONE; i++) code = bench_add_peer(b, i);
   return code;
 }
@@ -153,6 +178,7 @@ static int bench_measure(bench *b)
   int code = b->work.job != NULL ? judge_and_measure(b) : library_error(DVI_NO_MEMORY);
   if (code == DONE) code = bench_print(b);
   for (int i = 0; i < PEERS_MAX; i++) whole_job_clear(&b->of_peer[i]);
+  for (int i = 0; i < WORDS_MAX; i++) whole_job_clear(&b->of_bare[i]);
   free(b->work.job);
   judge_clear(&b->judge);
   return code;

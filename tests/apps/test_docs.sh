@@ -36,10 +36,10 @@ split() {
        inside { print > ("shown." n) }' "$1"
 }
 
-# Processor, compiler and the presence of GSL are those of the machine; the clock decides which
+# Processor, compiler and the build of SUNDIALS are those of the machine; the clock decides which
 # settings lie on a frontier.
 words() {
-  sed -e 's/^\(processor\): .*/\1/; s/^\(compiler\): .*/\1/; s/, GSL .*//' \
+  sed -e 's/^\(processor\): .*/\1/; s/^\(compiler\): .*/\1/; s/^\(SUNDIALS\) .*/\1/' \
     -e 's/  at most  /  interpolated  /' \
     -e 's/-\{0,1\}[0-9][0-9.]*\(e[-+]\{0,1\}[0-9][0-9]*\)\{0,1\}/N/g; s/  */ /g; s/ $//' "$1"
 }
