@@ -177,13 +177,17 @@ static dvi_status step_to_end(dvi_integrator *I, double h, double over, double l
 {
   double longer = h, shorter = 0, under = time_past_end(I, h, t_end);
   dvi_status failure = DVI_OK;
+  char sentence[DVI__SENTENCE_SIZE] = "";
   int side = 0;
   for (int i = 0; i < MOST_TRIES && fabs(longer - shorter) > least; i++) {
     const double part = isnan(over) ? 0.5 : under / (under - over),
                  length = shorter + (longer - shorter) * part;
     const dvi_status status = dvi_integrator_step(I, length);
     if (status < 0) return status;
-    if (status > 0) failure = status;
+    if (status > 0) {
+      failure = status;
+      (void)snprintf(sentence, sizeof sentence, "%s", dvi_last_error());
+    }
     const double missed = status == DVI_OK ? time_past_end(I, h, t_end) : (double)NAN;
     if (fabs(missed) <= tolerance) return arrive_at_end(I, t_end);
     if (status == DVI_OK) dvi__integrator_take_back(I);
@@ -197,7 +201,7 @@ static dvi_status step_to_end(dvi_integrator *I, double h, double over, double l
       side = 1;
     }
   }
-  if (failure != DVI_OK) return failure; /* its sentence is the last one */
+  if (failure != DVI_OK) return dvi__fail(failure, "%s", sentence);
   return dvi__fail(
       DVI_NOT_CONVERGED,
       "%s: the step from t = %.9g that ends at t = %.9g was not found; try a smaller h",

@@ -46,7 +46,9 @@ static dvi_status action_allocate(dvi__action *a, dvi_counters *counters)
     return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d nodes in %d dimensions", a->r, a->n);
   if (a->by_user) return DVI_OK;
   DVI_TRY(dvi__action_prepare_fixed_point(a));
-  if (dvi__action_has_fixed_point(a)) DVI_TRY(dvi__action_prepare_preconditioner(a));
+  DVI_TRY(dvi__action_prepare_transformed(a));
+  if (a->system->mass_diagonal != NULL && dvi__action_has_fixed_point(a))
+    DVI_TRY(dvi__action_prepare_preconditioner(a));
   return action_allocate_chord(a, counters);
 }
 
@@ -132,6 +134,7 @@ void dvi__action_destroy(dvi__action **action)
   dvi__action_clear_two_point(a);
   dvi__action_clear_energy(a);
   dvi__action_clear_preconditioner(a);
+  dvi__action_clear_transformed(a);
   dvi__action_clear_charts(a);
   dvi__action_clear_constraints(a);
   dvi__action_clear_carried_forces(a);

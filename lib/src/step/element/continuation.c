@@ -108,6 +108,22 @@ static void fill_force_shifts(const dvi__action *a, double ratio, double *shift)
   if (a->fixed_point.stages > a->r) fill_force_shift(a, &f, a->r, 1.0, shift);
 }
 
+const double *dvi__action_stage_shift(dvi__action *a, dvi__shifts *shifts, double ratio)
+{
+  int known;
+  double *shift = table_for(shifts, (size_t)a->r * (size_t)a->lanes, ratio, &known);
+  if (known) return shift;
+  fit f;
+  fit_forces(a, ratio, &f);
+  for (int k = 0; k < a->r; k++)
+    for (int j = 0; j < a->r; j++) {
+      long double sum = 0;
+      for (int m = 0; m < f.terms; m++) sum += f.U[j][m] * f.W[k][m];
+      shift[k * a->lanes + j] = (double)(ratio * a->weight[j] * sum);
+    }
+  return shift;
+}
+
 const double *dvi__action_fixed_point_shift(dvi__action *a, double ratio)
 {
   int known;

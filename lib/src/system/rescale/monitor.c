@@ -3,6 +3,7 @@
 #include <dvi/number.h>
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "core/memory.h"
 #include "core/status.h"
@@ -208,9 +209,8 @@ void dvi__monitor_set_energy(dvi__monitor *monitor, double energy)
 
 /* ---- evaluation ---- */
 
-dvi_status dvi__monitor_value(dvi__monitor *m, int count, const double *q, double *g)
+static dvi_status check_positive(const dvi__monitor *m, int count, const double *g)
 {
-  DVI_TRY(dvi__potential_value(&m->system->potentials[0], &m->scratch, count, m->t, q, g));
   for (int k = 0; k < count; k++)
     if (!(g[k] > 0) || !isfinite(1 / g[k]))
       return dvi__fail(DVI_NOT_FINITE,
@@ -219,9 +219,29 @@ dvi_status dvi__monitor_value(dvi__monitor *m, int count, const double *q, doubl
   return DVI_OK;
 }
 
+dvi_status dvi__monitor_value(dvi__monitor *m, int count, const double *q, double *g)
+{
+  DVI_TRY(dvi__potential_value(&m->system->potentials[0], &m->scratch, count, m->t, q, g));
+  return check_positive(m, count, g);
+}
+
 dvi_status dvi__monitor_gradient(dvi__monitor *m, int count, const double *q, double *g_q)
 {
   return dvi__potential_gradient(&m->system->potentials[0], &m->scratch, count, m->t, q, g_q);
+}
+
+dvi_status dvi__monitor_rates(dvi__monitor *m, int count, const double *q, double *g, double *g_q)
+{
+  const double *built_in = m->built_in.g;
+  if (built_in == NULL) {
+    DVI_TRY(dvi__monitor_value(m, count, q, g));
+    return dvi__monitor_gradient(m, count, q, g_q);
+  }
+  const dvi_status status = dvi__monitor_gradient(m, count, q, g_q);
+  if (status > 0) DVI_TRY(dvi__monitor_value(m, count, q, g)); /* its sentence comes first */
+  if (status != DVI_OK) return status;
+  memcpy(g, built_in, (size_t)count * sizeof *g);
+  return check_positive(m, count, g);
 }
 
 dvi_status dvi__monitor_hessian(dvi__monitor *m, int count, const double *q, double *g_qq)

@@ -352,6 +352,27 @@ dvi__transformed *dvi__transformed_of(const dvi_system *system)
   return term != NULL && term->computed == &computed ? term->of : NULL;
 }
 
+const double *dvi__transformed_masses(const dvi__transformed *x)
+{
+  const dvi_system *base = x->base;
+  return base->lagrangian == NULL && base->vector == NULL && base->slots == NULL
+             ? base->mass_diagonal
+             : NULL;
+}
+
+/* The kinetic part at rest is 0. */
+dvi_status dvi__transformed_evaluate(dvi__transformed *x, int count, const double *t,
+                                     const double *q, const dvi__rescaled *at)
+{
+  double *rest = x->work.v;
+  memset(rest, 0, (size_t)x->base->n * (size_t)count * sizeof *rest);
+  DVI_TRY(dvi__monitor_rates(x->monitor, count, q, at->g, at->g_q));
+  DVI_TRY(dvi__lagrangian_value(x->evaluator, count, t, q, rest, at->V));
+  DVI_TRY(dvi__potentials_gradient(x->evaluator, count, t, q, at->V_q));
+  for (int k = 0; k < count; k++) at->V[k] = -at->V[k] - x->energy;
+  return DVI_OK;
+}
+
 dvi__monitor *dvi__transformed_monitor(const dvi__transformed *x)
 {
   return x->monitor;
