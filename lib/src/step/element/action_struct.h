@@ -39,6 +39,9 @@ struct dvi__action {
   double *fit_point, *fit, *straight;    /* [s], [s*s] rows, [s] */
   dvi__shifts shift;                     /* continuation of paths, [s*path_lanes] by columns */
   double *shift_rows;                    /* [s*s] work */
+  /* Continuation of numbers at the nodes (continuation.c). NULL if none are continued. */
+  int fit_terms;
+  long double *fit_factor, *fit_nodes; /* [terms*terms] C and [r*terms] W_k, in one block */
   /* The element's place. */
   double t0, h;
   const double *q0, *p0;
@@ -85,7 +88,7 @@ struct dvi__action {
   struct dvi__constrained_rows *constrained;  /* holonomic constraints, or NULL */
   struct dvi__carried_forces *carried_forces; /* forces in charts, or NULL */
   struct dvi__nonholonomic_rows *nonholonomic;
-  struct dvi__preconditioner *preconditioner; /* of quadratic potentials, or NULL */
+  struct dvi__preconditioner *preconditioner;  /* of quadratic potentials, or NULL */
   struct dvi__transformed_stages *transformed; /* of a time-transformed system, or NULL */
   /* Paths between two points (two_point.h). NULL until prepared. */
   struct {
@@ -111,8 +114,11 @@ enum { DVI__CHORD_INVERSE = 8 };
  * [r*lanes] by columns. */
 const double *dvi__action_fixed_point_shift(dvi__action *action, double ratio);
 
-/* Give the table from numbers h b_j x_j of the last step to those of this one, [r*lanes] by columns.
- */
+/* Prepare the tables below. DVI_NO_MEMORY. */
+dvi_status dvi__action_prepare_continuation(dvi__action *action);
+
+/* Give the table from numbers h b_j x_j of the last step to those of this one, [r*lanes] by
+ * columns. */
 const double *dvi__action_stage_shift(dvi__action *action, dvi__shifts *shifts, double ratio);
 
 typedef struct dvi__centred_paths dvi__centred_paths;

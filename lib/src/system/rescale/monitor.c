@@ -1,6 +1,7 @@
 #include "system/rescale/monitor.h"
 
 #include <dvi/number.h>
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -134,15 +135,15 @@ static dvi_status allocate_built_in(dvi__built_in *own, const dvi_monitor *given
   own->square = DVI_NEW(double, capacity);
   own->rate = DVI_NEW(double, capacity);
   own->V_q = DVI_NEW(double, numbers);
-  if (!own->g || !own->square || !own->rate || !own->V_q)
+  own->a = DVI_NEW(double, numbers);
+  if (!own->g || !own->square || !own->rate || !own->V_q || !own->a)
     return dvi__fail(DVI_NO_MEMORY, "monitor: no memory");
   if (given->kind == DVI_MONITOR_DISTANCE) return DVI_OK;
   DVI_TRY(
       dvi__evaluator_create(own->system, (int)capacity, DVI__HESSIANS, counters, &own->evaluator));
   own->zero = DVI_NEW(double, numbers);
-  own->a = DVI_NEW(double, numbers);
   own->V_qq = DVI_NEW(double, (1 + (size_t)dvi__pattern_entries(&own->system->qq)) * capacity);
-  return own->zero && own->a && own->V_qq ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "monitor: no memory");
+  return own->zero && own->V_qq ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "monitor: no memory");
 }
 
 static dvi_status monitor_fill(dvi__monitor *m, const dvi_system *system, const dvi_monitor *given,
@@ -209,10 +210,18 @@ void dvi__monitor_set_energy(dvi__monitor *monitor, double energy)
 
 /* ---- evaluation ---- */
 
+/* Every comparison with NaN is false. */
+static int is_positive(double g)
+{
+  return (g > 0) & (g <= DBL_MAX) & (1 / g <= DBL_MAX);
+}
+
 static dvi_status check_positive(const dvi__monitor *m, int count, const double *g)
 {
-  for (int k = 0; k < count; k++)
-    if (!(g[k] > 0) || !isfinite(1 / g[k]))
+  int positive = 1;
+  for (int k = 0; k < count; k++) positive &= is_positive(g[k]);
+  for (int k = 0; k < count && !positive; k++)
+    if (!is_positive(g[k]))
       return dvi__fail(DVI_NOT_FINITE,
                        "monitor %s is %g; it must be positive and finite, and so must 1/g", m->name,
                        g[k]);

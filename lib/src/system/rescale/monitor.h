@@ -44,8 +44,9 @@ typedef struct dvi__built_in {
   dvi__evaluator *evaluator; /* evaluator of the system, NULL if only distances are needed */
   /* g, left there by every gradient, and r^2 and r^-power of a pair, or V_q.a, [capacity] */
   double *g, *square, *rate;
-  double *zero, *V_q, *a;    /* zero velocity, V_q and M^-1 V_q, [n*capacity] */
-  double *V_qq;              /* Hessian [entries*capacity] */
+  /* zero velocity, V_q, and M^-1 V_q or the differences of a pair, [n*capacity] */
+  double *zero, *V_q, *a;
+  double *V_qq; /* Hessian [entries*capacity] */
 } dvi__built_in;
 
 /* Fill in the callbacks (distance.c, motion.c). */

@@ -17,6 +17,7 @@
 #include "core/status.h"
 #include "num/finite.h"
 #include "system/evaluate/dynamics.h"
+#include "system/evaluate/evaluator_struct.h"
 
 /* Work for a batch, all in one block. */
 typedef struct work {
@@ -360,17 +361,19 @@ const double *dvi__transformed_masses(const dvi__transformed *x)
              : NULL;
 }
 
-/* The kinetic part at rest is 0. */
 dvi_status dvi__transformed_evaluate(dvi__transformed *x, int count, const double *t,
                                      const double *q, const dvi__rescaled *at)
 {
-  double *rest = x->work.v;
-  memset(rest, 0, (size_t)x->base->n * (size_t)count * sizeof *rest);
+  double *term = x->work.lag;
   DVI_TRY(dvi__monitor_rates(x->monitor, count, q, at->g, at->g_q));
-  DVI_TRY(dvi__lagrangian_value(x->evaluator, count, t, q, rest, at->V));
-  DVI_TRY(dvi__potentials_gradient(x->evaluator, count, t, q, at->V_q));
-  for (int k = 0; k < count; k++) at->V[k] = -at->V[k] - x->energy;
-  return DVI_OK;
+  x->counters->values += count;
+  for (int k = 0; k < count; k++) at->V[k] = -x->energy;
+  for (int p = 0; p < x->base->potential_count; p++) {
+    DVI_TRY(
+        dvi__potential_value(&x->base->potentials[p], &x->evaluator->scratch, count, t, q, term));
+    for (int k = 0; k < count; k++) at->V[k] += term[k];
+  }
+  return dvi__potentials_gradient(x->evaluator, count, t, q, at->V_q);
 }
 
 dvi__monitor *dvi__transformed_monitor(const dvi__transformed *x)

@@ -30,8 +30,8 @@ dvi__monitor *dvi__transformed_monitor(const dvi__transformed *transformed);
  * other systems. */
 const double *dvi__transformed_masses(const dvi__transformed *transformed);
 
-/* Compute what Lg and its derivatives are made of then, at `count` places: g and V - E0 [count], g_q
- * and V_q [n*count]. */
+/* Compute what Lg and its derivatives are made of then, at `count` places: g and V - E0 [count],
+ * g_q and V_q [n*count]. */
 typedef struct dvi__rescaled {
   double *g, *g_q, *V, *V_q;
 } dvi__rescaled;
