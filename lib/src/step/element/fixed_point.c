@@ -54,11 +54,16 @@ static double to_grid(long double x)
 }
 
 /* x^T K^{-1} y of two functions at nodes, from C^{-1} x and C^{-1} y. */
-static double inner_product(int s, const long double *x, const long double *y)
+static long double plain_product(int s, const long double *x, const long double *y)
 {
   long double sum = 0;
   for (int k = 0; k < s; k++) sum += x[k] * y[k];
-  return to_grid(sum);
+  return sum;
+}
+
+static double inner_product(int s, const long double *x, const long double *y)
+{
+  return to_grid(plain_product(s, x, y));
 }
 
 /* Store c_i - P_ij by columns, c, and 1/2 - c. P_ij = (C^{-1} psi_i) . (C^{-1} psi_j) is symmetric
@@ -181,7 +186,7 @@ dvi_status dvi__action_prepare_fixed_point(dvi__action *a)
 /* Differences from 1 are exact on this grid, for numbers below 2. */
 static double to_coarse_grid(long double x)
 {
-  return (double)ldexpl(nearbyintl(ldexpl(x, 52)), -52);
+  return (double)(nearbyintl(0x1p52L * x) * 0x1p-52L);
 }
 
 dvi_status dvi__action_fill_transformed(const dvi__action *a, double *place, double *momentum,
@@ -192,7 +197,7 @@ dvi_status dvi__action_fill_transformed(const dvi__action *a, double *place, dou
   DVI_TRY(make_tables(a, node, &t));
   for (int i = 0; i < a->r; i++)
     for (int j = 0; j < a->r; j++) {
-      const double W = to_coarse_grid(inner_product(a->s, t->psi[i], t->slope[j]));
+      const double W = to_coarse_grid(plain_product(a->s, t->psi[i], t->slope[j]));
       place[j * a->lanes + i] = W;
       momentum[i * a->lanes + j] = 1 - W;
     }

@@ -29,6 +29,10 @@ typedef struct work {
   double *g_qq, *base_qq, *base_qv, *base_vv;
 } work;
 
+/* Numbers of the Hessians for which there is room at first. Most steps of small systems need no
+ * more. */
+enum { SMALL_HESSIANS = 64 };
+
 struct dvi__transformed {
   const dvi_system *base;
   dvi_system *system;
@@ -314,7 +318,7 @@ static dvi_status transformed_fill(dvi__transformed *x, const dvi_system *system
     return dvi__fail(DVI_UNSUPPORTED,
                      "the system declares noise, which is that of equal steps of time");
   DVI_TRY(dvi__system_prepare_hessian(system));
-  DVI_TRY(transformed_reserve(x, 1));
+  DVI_TRY(transformed_reserve(x, 1 + SMALL_HESSIANS / system->n / system->n));
   return make_transformed_system(x);
 }
 
