@@ -194,10 +194,10 @@ static double part_of_step(const dvi_integrator *I, double h, double time)
 }
 
 /* Take the step from here that ends at t_end. Its length is found by Newton's method from `guess`,
- * or by Illinois' variant of regula falsi (Dowell and Jarratt 1971), between a step that falls short
- * and one that passes the end by `over`. While the longer step fails, over is NaN and the interval
- * is bisected, down to `least`. A failure there is no failure of the run, which never reaches states
- * beyond the end. */
+ * or by Illinois' variant of regula falsi (Dowell and Jarratt 1971), between a step that falls
+ * short and one that passes the end by `over`. While the longer step fails, over is NaN and the
+ * interval is bisected, down to `least`. A failure there is no failure of the run, which never
+ * reaches states beyond the end. */
 static dvi_status step_to_end(dvi_integrator *I, double h, double guess, double over, double least,
                               double t_end, double tolerance)
 {
