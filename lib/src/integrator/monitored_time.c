@@ -1,7 +1,6 @@
 /* Steps in a fictitious time by a monitor: creation, start, and the last step of a run. */
 #include "integrator/monitored_time.h"
 
-#include <dvi/quadrature.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -31,7 +30,7 @@ static dvi_status monitored_time_prepare(dvi__monitored_time *m, const dvi_syste
                                                     : m->monitor;
   (void)snprintf(m->name, sizeof m->name, "%s", dvi__monitor_name(made));
   m->given.function.name = m->name;
-  return dvi_quadrature(DVI_GAUSS, DVI__MONITORED_POINTS, m->node, m->weight);
+  return DVI_OK;
 }
 
 dvi_status dvi__monitored_time_create(const dvi_system *system, const dvi_monitor *monitor,
@@ -150,7 +149,7 @@ dvi_status dvi__monitored_time_start(dvi_integrator *I, double t, const double *
 
 /* ---- the last step of a run ---- */
 
-enum { MOST_TRIES = 60 };
+enum { MOST_TRIES = 60, TRIES_BY_RATE = 8 };
 
 /* Return the time past the end, in the direction of the run. */
 static double time_past_end(const dvi_integrator *I, double h, double t_end)
@@ -168,25 +167,61 @@ static dvi_status arrive_at_end(dvi_integrator *I, double t_end)
   return DVI_OK;
 }
 
-/* Take the step from here that ends at t_end. Its length is found by Illinois' variant of regula
- * falsi (Dowell and Jarratt 1971) between a step that falls short and one that passes the end by
- * `over`. While the longer step fails, over is NaN and the interval is bisected, down to `least`. A
- * failure there is no failure of the run, which never reaches states beyond the end. */
-static dvi_status step_to_end(dvi_integrator *I, double h, double over, double least, double t_end,
-                              double tolerance)
+/* Give g at a state of transformed steps, the rate at which the time grows with their length there.
+ * NaN with other steps, or if the monitor fails. */
+static double rate_at(const dvi_integrator *I, const dvi__state *state)
+{
+  double g;
+  if (I->monitored->transformed == NULL ||
+      dvi__monitored_time_value(I->monitored, state->q, &g) != DVI_OK)
+    return (double)NAN;
+  return g;
+}
+
+/* Give the part of the last step, of length h, that takes this part of its time, by the cubic with
+ * the rates at both ends. NaN if they are not known. */
+static double part_of_step(const dvi_integrator *I, double h, double time)
+{
+  const double whole = fabs(I->last_h / h), start = rate_at(I, &I->last) / whole,
+               end = rate_at(I, &I->now) / whole;
+  double x = time;
+  for (int i = 0; i < 4; i++) {
+    const double missed = x * (start + x * (3 - 2 * start - end + x * (start + end - 2))) - time,
+                 slope = start + x * (6 - 4 * start - 2 * end + 3 * x * (start + end - 2));
+    x -= missed / slope;
+  }
+  return x;
+}
+
+/* Take the step from here that ends at t_end. Its length is found by Newton's method from `guess`,
+ * or by Illinois' variant of regula falsi (Dowell and Jarratt 1971), between a step that falls
+ * short and one that passes the end by `over`. While the longer step fails, over is NaN and the
+ * interval is bisected, down to `least`. A failure there is no failure of the run, which never
+ * reaches states beyond the end. */
+static dvi_status step_to_end(dvi_integrator *I, double h, double guess, double over, double least,
+                              double t_end, double tolerance)
 {
   double longer = h, shorter = 0, under = time_past_end(I, h, t_end);
   dvi_status failure = DVI_OK;
+  char sentence[DVI__SENTENCE_SIZE] = "";
   int side = 0;
   for (int i = 0; i < MOST_TRIES && fabs(longer - shorter) > least; i++) {
-    const double part = isnan(over) ? 0.5 : under / (under - over),
-                 length = shorter + (longer - shorter) * part;
+    const double part = isnan(over) ? 0.5 : under / (under - over);
+    const int is_between = i < TRIES_BY_RATE && (guess - shorter) * (longer - guess) > 0;
+    const double length = is_between ? guess : shorter + (longer - shorter) * part;
     const dvi_status status = dvi_integrator_step(I, length);
     if (status < 0) return status;
-    if (status > 0) failure = status;
+    if (status > 0) {
+      failure = status;
+      (void)snprintf(sentence, sizeof sentence, "%s", dvi_last_error());
+    }
     const double missed = status == DVI_OK ? time_past_end(I, h, t_end) : (double)NAN;
     if (fabs(missed) <= tolerance) return arrive_at_end(I, t_end);
-    if (status == DVI_OK) dvi__integrator_take_back(I);
+    guess = (double)NAN;
+    if (status == DVI_OK) {
+      guess = length - copysign(missed / rate_at(I, &I->now), length);
+      dvi__integrator_take_back(I);
+    }
     if (missed < 0) {
       shorter = length, under = missed;
       if (side < 0) over *= 0.5;
@@ -197,7 +232,7 @@ static dvi_status step_to_end(dvi_integrator *I, double h, double over, double l
       side = 1;
     }
   }
-  if (failure != DVI_OK) return failure; /* its sentence is the last one */
+  if (failure != DVI_OK) return dvi__fail(failure, "%s", sentence);
   return dvi__fail(
       DVI_NOT_CONVERGED,
       "%s: the step from t = %.9g that ends at t = %.9g was not found; try a smaller h",
@@ -213,7 +248,7 @@ static dvi_status retry_to_end(dvi_integrator *I, double h, double t_end, double
   if (failure < 0 || dvi__monitored_time_value(I->monitored, I->now.q, &g) != DVI_OK ||
       time_past_end(I, h, t_end) + 2 * fabs(h) * g < 0)
     return failure;
-  return step_to_end(I, h, (double)NAN, 0.0625 * tolerance / g, t_end, tolerance);
+  return step_to_end(I, h, (double)NAN, (double)NAN, 0.0625 * tolerance / g, t_end, tolerance);
 }
 
 dvi_status dvi__monitored_time_step(dvi_integrator *I, double h, double t_end, double tolerance)
@@ -223,6 +258,7 @@ dvi_status dvi__monitored_time_step(dvi_integrator *I, double h, double t_end, d
   const double over = time_past_end(I, h, t_end);
   if (over < -tolerance) return DVI_OK;
   if (over <= tolerance) return arrive_at_end(I, t_end);
+  const double part = part_of_step(I, h, 1 - over / fabs(I->last_h));
   dvi__integrator_take_back(I);
-  return step_to_end(I, h, over, 0, t_end, tolerance);
+  return step_to_end(I, h, part * h, over, 0, t_end, tolerance);
 }

@@ -9,6 +9,7 @@
  *
  *     g = sum_m a_m P_m(x),     x = 2 tau - 1,
  *     G = 1/2 a_0 (x + 1) + 1/2 sum_m a_m (P_m+1 - P_m-1)/(2m + 1). */
+#include <dvi/quadrature.h>
 #include <math.h>
 
 #include "core/status.h"
@@ -29,6 +30,8 @@ static dvi_status expand_monitor(dvi_integrator *I)
   dvi__monitored_time *monitored = I->monitored;
   double P[POINTS + 1], g;
   if (monitored->expanded) return DVI_OK;
+  if (monitored->weight[0] == 0)
+    DVI_TRY(dvi_quadrature(DVI_GAUSS, POINTS, monitored->node, monitored->weight));
   for (int m = 0; m < POINTS; m++) monitored->series[m] = 0;
   for (int k = 0; k < POINTS; k++) {
     I->stepper.method->path(&I->stepper, I->last.q, 1, monitored->node[k], monitored->q, NULL);

@@ -110,7 +110,10 @@ void dvi__element_explain(const dvi__stepper *self, dvi__text *text)
     dvi__text_add(text, "no Jacobian: %s\n", dvi_last_error());
   dvi__text_add(
       text, "kinetic part: %s\n",
-      general ? "general Lagrangian; its velocity Hessian is evaluated once a step"
+      general && dvi__action_has_fixed_point(own->action)
+          ? "constant mass without coupling, divided by the monitor: fixed point iteration on the "
+            "positions and momenta at the nodes"
+      : general ? "general Lagrangian; its velocity Hessian is evaluated once a step"
       : dvi__action_has_preconditioner(own->action)
           ? "constant mass without coupling: fixed point iteration on the positions at the nodes, "
             "in which quadratic potentials with a diagonal Hessian are implicit"

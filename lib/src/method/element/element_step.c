@@ -192,7 +192,8 @@ dvi_status dvi__element_create(dvi__stepper *self, const dvi__action_space *spac
   own->quadratic = dvi__element_is_quadratic(self->system);
   own->definite = dvi__element_is_definite(self->system, dvi__action_evaluator(own->action));
   self->weighs_damping = self->system->damping > 0;
-  own->late_paths = dvi__action_has_fixed_point(own->action) && !self->bound && !own->has_forces &&
+  own->late_paths = self->system->mass_diagonal != NULL &&
+                    dvi__action_has_fixed_point(own->action) && !self->bound && !own->has_forces &&
                     !own->has_rates && own->choice != DVI__SOLVER_CERTIFIED;
   if (self->system->place_rows > 0) DVI_TRY(dvi__action_constrain(own->action));
   if (self->system->place_rows > 0 || self->weighs_damping) return element_renew_solver(self);

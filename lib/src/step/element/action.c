@@ -46,7 +46,10 @@ static dvi_status action_allocate(dvi__action *a, dvi_counters *counters)
     return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d nodes in %d dimensions", a->r, a->n);
   if (a->by_user) return DVI_OK;
   DVI_TRY(dvi__action_prepare_fixed_point(a));
-  if (dvi__action_has_fixed_point(a)) DVI_TRY(dvi__action_prepare_preconditioner(a));
+  DVI_TRY(dvi__action_prepare_transformed(a));
+  if (a->system->mass_diagonal != NULL && dvi__action_has_fixed_point(a))
+    DVI_TRY(dvi__action_prepare_preconditioner(a));
+  if (dvi__action_has_fixed_point(a)) DVI_TRY(dvi__action_prepare_continuation(a));
   return action_allocate_chord(a, counters);
 }
 
@@ -79,6 +82,14 @@ dvi_status dvi__action_create_by_user(const dvi_system *system, int functions, i
 {
   return action_create(system, &(dvi__action_space){.degree = functions, .nodes = points}, 1,
                        counters, action);
+}
+
+/* Free what fixed-point iterations have beside their tables. */
+static void action_clear_iterations(dvi__action *a)
+{
+  dvi__release(a->fit_factor);
+  dvi__action_clear_preconditioner(a);
+  dvi__action_clear_transformed(a);
 }
 
 void dvi__action_destroy(dvi__action **action)
@@ -129,9 +140,9 @@ void dvi__action_destroy(dvi__action **action)
                            a->system->vector != NULL ? a->fixed_point.force : NULL,
                            a->system->vector != NULL ? a->fixed_point.Q : NULL};
   for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) dvi__release(owned[i]);
+  action_clear_iterations(a);
   dvi__action_clear_two_point(a);
   dvi__action_clear_energy(a);
-  dvi__action_clear_preconditioner(a);
   dvi__action_clear_charts(a);
   dvi__action_clear_constraints(a);
   dvi__action_clear_carried_forces(a);

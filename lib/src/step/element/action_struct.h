@@ -40,6 +40,9 @@ struct dvi__action {
   double *fit_point, *fit, *straight;    /* [s], [s*s] rows, [s] */
   dvi__shifts shift;                     /* continuation of paths, [s*path_lanes] by columns */
   double *shift_rows;                    /* [s*s] work */
+  /* Continuation of numbers at the nodes (continuation.c). NULL if none are continued. */
+  int fit_terms;
+  long double *fit_factor, *fit_nodes; /* [terms*terms] C and [r*terms] W_k, in one block */
   /* The element's place. */
   double t0, h;
   const double *q0, *p0;
@@ -87,7 +90,8 @@ struct dvi__action {
   struct dvi__constrained_rows *constrained;  /* holonomic constraints, or NULL */
   struct dvi__carried_forces *carried_forces; /* forces in charts, or NULL */
   struct dvi__nonholonomic_rows *nonholonomic;
-  struct dvi__preconditioner *preconditioner; /* of quadratic potentials, or NULL */
+  struct dvi__preconditioner *preconditioner;  /* of quadratic potentials, or NULL */
+  struct dvi__transformed_stages *transformed; /* of a time-transformed system, or NULL */
   /* Paths between two points (two_point.h). NULL until prepared. */
   struct {
     double *bubble;     /* [(s-1)*s] beta_m in the functions psi_k */
@@ -111,6 +115,13 @@ enum { DVI__CHORD_INVERSE = 8 };
 /* Give the table from the last step's forces to the sums of forces in a step `ratio` times as long,
  * [r*lanes] by columns. */
 const double *dvi__action_fixed_point_shift(dvi__action *action, double ratio);
+
+/* Prepare the tables below. DVI_NO_MEMORY. */
+dvi_status dvi__action_prepare_continuation(dvi__action *action);
+
+/* Give the table from numbers h b_j x_j of the last step to those of this one, [r*lanes] by
+ * columns. */
+const double *dvi__action_stage_shift(dvi__action *action, dvi__shifts *shifts, double ratio);
 
 typedef struct dvi__centred_paths dvi__centred_paths;
 typedef struct dvi__constrained_rows dvi__constrained_rows;
@@ -205,6 +216,21 @@ struct dvi__action_members;
 void dvi__preconditioner_begin_members(struct dvi__action_members *members);
 void dvi__preconditioner_iterate_members(struct dvi__action_members *members);
 void dvi__preconditioner_other_forces_of_members(struct dvi__action_members *members);
+
+/* The iteration of a time-transformed element (transformed.c). Prepare it if the system is of its
+ * kind, with as many nodes as functions. The others are those of fixed_point.h. */
+dvi_status dvi__action_prepare_transformed(dvi__action *action);
+void dvi__action_clear_transformed(dvi__action *action);
+void dvi__transformed_begin(dvi__action *action, const double *Y);
+void dvi__transformed_continue(dvi__action *action, double ratio, const double *flows);
+dvi_status dvi__transformed_iterate(dvi__action *action, double *change, double *largest);
+void dvi__transformed_path(const dvi__action *action, double *Y);
+void dvi__transformed_ends(const dvi__action *action, double *dq, double *dq_low, double *dp);
+void dvi__transformed_flows(const dvi__action *action, double *flows);
+
+/* Fill its tables, place and momentum [r*lanes] and path [r*path_lanes] (fixed_point.c). */
+dvi_status dvi__action_fill_transformed(const dvi__action *action, double *place, double *momentum,
+                                        double *path);
 
 /* Free the memory of dvi__action_prepare_energy. */
 void dvi__action_clear_energy(dvi__action *action);

@@ -2,6 +2,8 @@
 #include <math.h>
 
 #include "step/element/action_struct.h"
+#include "core/memory.h"
+#include "core/status.h"
 #include "num/cholesky.h"
 #include "num/simd/lanes.h"
 #include "space/legendre.h"
@@ -54,47 +56,50 @@ void dvi__action_continue(dvi__action *a, double ratio, const double *last, doub
  *
  *     value_j = sum_k b_k U_j.W_k value_k,    W_k = C^{-1} P(c_k),   U_j = C^{-1} P(1 + ratio c_j),
  *     C C^T = sum_k b_k P(c_k) P(c_k)^T. */
-typedef struct fit {
-  int terms;
-  long double U[DVI_QUADRATURE_MAX][CONTINUED_DEGREE], W[DVI_QUADRATURE_MAX][CONTINUED_DEGREE];
-  long double C[CONTINUED_DEGREE * CONTINUED_DEGREE];
-} fit;
+typedef long double continued[DVI_QUADRATURE_MAX][CONTINUED_DEGREE];
 
-static void fit_forces(const dvi__action *a, double ratio, fit *f)
+dvi_status dvi__action_prepare_continuation(dvi__action *a)
 {
   long double difference[CONTINUED_DEGREE];
-  const int terms = f->terms = a->r < CONTINUED_DEGREE ? a->r : CONTINUED_DEGREE;
-  for (int k = 0; k < terms * terms; k++) f->C[k] = 0;
+  const int terms = a->fit_terms = a->r < CONTINUED_DEGREE ? a->r : CONTINUED_DEGREE;
+  long double *C = a->fit_factor = DVI_NEW(long double, terms *(terms + a->r));
+  if (C == NULL) return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d nodes", a->r);
+  a->fit_nodes = C + terms * terms;
   for (int j = 0; j < a->r; j++) {
-    const long double tau = a->node[j];
-    dvi__legendre(terms - 1, 1 - tau, f->W[j], difference);
-    dvi__legendre(terms - 1, -ratio * tau, f->U[j], difference);
+    long double *W = a->fit_nodes + j * terms;
+    dvi__legendre(terms - 1, 1 - (long double)a->node[j], W, difference);
     for (int k = 0; k < terms; k++)
-      for (int l = 0; l <= k; l++) f->C[k * terms + l] += a->weight[j] * f->W[j][k] * f->W[j][l];
+      for (int l = 0; l <= k; l++) C[k * terms + l] += a->weight[j] * W[k] * W[l];
   }
-  dvi__cholesky(terms, f->C);
+  dvi__cholesky(terms, C);
+  for (int j = 0; j < a->r; j++) dvi__cholesky_half(terms, C, a->fit_nodes + j * terms);
+  return DVI_OK;
+}
+
+static void continue_nodes(const dvi__action *a, double ratio, continued U)
+{
+  long double difference[CONTINUED_DEGREE];
   for (int j = 0; j < a->r; j++) {
-    dvi__cholesky_half(terms, f->C, f->U[j]);
-    dvi__cholesky_half(terms, f->C, f->W[j]);
+    dvi__legendre(a->fit_terms - 1, -ratio * (long double)a->node[j], U[j], difference);
+    dvi__cholesky_half(a->fit_terms, a->fit_factor, U[j]);
   }
 }
 
 /* Make the table from g of the last step to sum_j (c_i - P_ij) g_j of this one. With g_j = h b_j
  * L_q_j the weights b_k of the fit cancel. Those of a vector potential, which have no h, are the
  * second half of the columns. */
-static void fill_force_shift(const dvi__action *a, const fit *f, int first, double ratio,
+static void fill_force_shift(const dvi__action *a, continued U, int first, double ratio,
                              double *shift)
 {
   const int lanes = a->fixed_point.lanes;
   for (int i = 0; i < a->fixed_point.stages; i++) {
     long double row[CONTINUED_DEGREE] = {0};
     for (int j = 0; j < a->r; j++)
-      for (int m = 0; m < f->terms; m++)
-        row[m] += a->fixed_point.matrix[(first + j) * lanes + i] * ratio * a->weight[j] *
-                  f->U[j][m];
+      for (int m = 0; m < a->fit_terms; m++)
+        row[m] += a->fixed_point.matrix[(first + j) * lanes + i] * ratio * a->weight[j] * U[j][m];
     for (int k = 0; k < a->r; k++) {
       long double sum = 0;
-      for (int m = 0; m < f->terms; m++) sum += row[m] * f->W[k][m];
+      for (int m = 0; m < a->fit_terms; m++) sum += row[m] * a->fit_nodes[k * a->fit_terms + m];
       shift[(first + k) * lanes + i] = (double)sum;
     }
   }
@@ -102,10 +107,26 @@ static void fill_force_shift(const dvi__action *a, const fit *f, int first, doub
 
 static void fill_force_shifts(const dvi__action *a, double ratio, double *shift)
 {
-  fit f;
-  fit_forces(a, ratio, &f);
-  fill_force_shift(a, &f, 0, ratio, shift);
-  if (a->fixed_point.stages > a->r) fill_force_shift(a, &f, a->r, 1.0, shift);
+  continued U;
+  continue_nodes(a, ratio, U);
+  fill_force_shift(a, U, 0, ratio, shift);
+  if (a->fixed_point.stages > a->r) fill_force_shift(a, U, a->r, 1.0, shift);
+}
+
+const double *dvi__action_stage_shift(dvi__action *a, dvi__shifts *shifts, double ratio)
+{
+  int known;
+  double *shift = table_for(shifts, (size_t)a->r * (size_t)a->lanes, ratio, &known);
+  if (known) return shift;
+  continued U;
+  continue_nodes(a, ratio, U);
+  for (int k = 0; k < a->r; k++)
+    for (int j = 0; j < a->r; j++) {
+      long double sum = 0;
+      for (int m = 0; m < a->fit_terms; m++) sum += U[j][m] * a->fit_nodes[k * a->fit_terms + m];
+      shift[k * a->lanes + j] = (double)(ratio * a->weight[j] * sum);
+    }
+  return shift;
 }
 
 const double *dvi__action_fixed_point_shift(dvi__action *a, double ratio)

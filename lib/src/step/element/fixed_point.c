@@ -55,11 +55,16 @@ static double to_grid(long double x)
 }
 
 /* x^T K^{-1} y of two functions at nodes, from C^{-1} x and C^{-1} y. */
-static double inner_product(int s, const long double *x, const long double *y)
+static long double plain_product(int s, const long double *x, const long double *y)
 {
   long double sum = 0;
   for (int k = 0; k < s; k++) sum += x[k] * y[k];
-  return to_grid(sum);
+  return sum;
+}
+
+static double inner_product(int s, const long double *x, const long double *y)
+{
+  return to_grid(plain_product(s, x, y));
 }
 
 /* Store c_i - P_ij by columns, c, and 1/2 - c. P_ij = (C^{-1} psi_i) . (C^{-1} psi_j) is symmetric
@@ -94,15 +99,16 @@ static void fixed_point_store_velocities(dvi__action *a, const tables *t)
 }
 
 /* Store the last factor of the path by the forces, Y = h/m (p0 straight - K^{-1} (bar g + psi' a)),
- * by columns, in the space's own basis. `table` holds bar or psi', for the columns from `first`. */
-static void fixed_point_store_path(dvi__action *a, const double *table, int first)
+ * by columns, in the space's own basis. `table` holds bar or psi'. */
+static void fixed_point_store_path(const dvi__action *a, const double *table, double sign,
+                                   double *path)
 {
   const int s = a->s, r = a->r;
   for (int j = 0; j < r; j++)
     for (int k = 0; k < s; k++) {
       double sum = 0;
       for (int l = 0; l < s; l++) sum += a->stiffness_inverse[k * s + l] * table[l * a->lanes + j];
-      a->fixed_point.path[(first + j) * a->path_lanes + k] = -sum;
+      path[j * a->path_lanes + k] = sign * sum;
     }
 }
 
@@ -144,26 +150,60 @@ static dvi_status fixed_point_allocate(dvi__action *a)
 
 int dvi__action_has_fixed_point(const dvi__action *a)
 {
+  if (a->transformed != NULL) return a->terms.count == 0;
   return a->system->mass_diagonal != NULL &&
          (a->system->terms & (DVI__FRICTION | DVI__DAMPING)) == 0 && a->terms.count == 0;
 }
 
+static dvi_status make_tables(const dvi__action *a, long double *node, tables **t)
+{
+  long double weight[DVI_QUADRATURE_MAX];
+  *t = NULL;
+  DVI_TRY(dvi__quadrature_long(a->space.rule, a->r, node, weight));
+  *t = DVI_NEW(tables, 1);
+  if (*t == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "action: no memory for tables of degree %d", a->s);
+  fixed_point_fill(a->s, a->r, node, weight, *t);
+  return DVI_OK;
+}
+
 dvi_status dvi__action_prepare_fixed_point(dvi__action *a)
 {
-  long double node[DVI_QUADRATURE_MAX], weight[DVI_QUADRATURE_MAX];
+  long double node[DVI_QUADRATURE_MAX];
+  tables *t;
   if (!dvi__action_has_fixed_point(a)) return DVI_OK;
   DVI_TRY(fixed_point_allocate(a));
-  DVI_TRY(dvi__quadrature_long(a->space.rule, a->r, node, weight));
-  tables *t = DVI_NEW(tables, 1);
-  if (t == NULL) return dvi__fail(DVI_NO_MEMORY, "action: no memory for tables of degree %d", a->s);
-  fixed_point_fill(a->s, a->r, node, weight, t);
+  DVI_TRY(make_tables(a, node, &t));
   fixed_point_store(a, node, t);
-  fixed_point_store_path(a, a->bar, 0);
+  fixed_point_store_path(a, a->bar, -1, a->fixed_point.path);
   if (a->system->vector != NULL) {
     fixed_point_store_velocities(a, t);
-    fixed_point_store_path(a, a->dpsi, a->r);
+    fixed_point_store_path(a, a->dpsi, -1, a->fixed_point.path + a->r * a->path_lanes);
   }
   dvi__release(t);
+  return DVI_OK;
+}
+
+/* Differences from 1 are exact on this grid, for numbers below 2. */
+static double to_coarse_grid(long double x)
+{
+  return (double)(nearbyintl(0x1p52L * x) * 0x1p-52L);
+}
+
+dvi_status dvi__action_fill_transformed(const dvi__action *a, double *place, double *momentum,
+                                        double *path)
+{
+  long double node[DVI_QUADRATURE_MAX];
+  tables *t;
+  DVI_TRY(make_tables(a, node, &t));
+  for (int i = 0; i < a->r; i++)
+    for (int j = 0; j < a->r; j++) {
+      const double W = to_coarse_grid(plain_product(a->s, t->psi[i], t->slope[j]));
+      place[j * a->lanes + i] = W;
+      momentum[i * a->lanes + j] = 1 - W;
+    }
+  dvi__release(t);
+  fixed_point_store_path(a, a->dpsi, 1, path);
   return DVI_OK;
 }
 
@@ -210,6 +250,10 @@ static void put_offsets(dvi__action *a, const double *batch, int first)
 
 void dvi__action_fixed_point_begin(dvi__action *a, const double *Y)
 {
+  if (a->transformed != NULL) {
+    dvi__transformed_begin(a, Y);
+    return;
+  }
   const size_t r = (size_t)a->r, stages = (size_t)a->fixed_point.stages;
   dvi__action_set_step(a);
   const dvi__fixed_point *iteration = place_iteration(a);
@@ -230,6 +274,10 @@ void dvi__action_fixed_point_begin(dvi__action *a, const double *Y)
 
 void dvi__action_fixed_point_continue(dvi__action *a, double ratio, const double *g)
 {
+  if (a->transformed != NULL) {
+    dvi__transformed_continue(a, ratio, g);
+    return;
+  }
   dvi__action_set_step(a);
   const dvi__fixed_point *iteration = place_iteration(a);
   const double *shift = dvi__action_fixed_point_shift(a, ratio);
@@ -264,6 +312,7 @@ static dvi_status evaluate_stages(dvi__action *a)
 
 dvi_status dvi__action_iterate(dvi__action *a, double *change, double *largest)
 {
+  if (a->transformed != NULL) return dvi__transformed_iterate(a, change, largest);
   dvi__fixed_point *iteration = &a->fixed_point.iteration;
   const dvi_status status = a->fixed_point.stages > a->r
                                 ? evaluate_stages(a)
@@ -294,7 +343,10 @@ void dvi__action_path_of_forces(const dvi__action *a, double h, const double *p0
 
 void dvi__action_fixed_point_path(const dvi__action *a, double *Y)
 {
-  dvi__action_path_of_forces(a, a->h, a->p0, a->fixed_point.force, Y);
+  if (a->transformed != NULL)
+    dvi__transformed_path(a, Y);
+  else
+    dvi__action_path_of_forces(a, a->h, a->p0, a->fixed_point.force, Y);
 }
 
 int dvi__action_is_iterated(const dvi__action *a)
@@ -320,6 +372,10 @@ static void part_stages(const dvi__action *a)
 void dvi__action_fixed_point_ends(const dvi__action *a, double *dq, double *dq_low, double *dp)
 {
   const int has_velocities = a->fixed_point.stages > a->r;
+  if (a->transformed != NULL) {
+    dvi__transformed_ends(a, dq, dq_low, dp);
+    return;
+  }
   if (has_velocities) part_stages(a);
   dvi__lanes_ends(&(dvi__ends){.n = a->n,
                                .stages = a->r,
@@ -334,7 +390,8 @@ void dvi__action_fixed_point_ends(const dvi__action *a, double *dq, double *dq_l
 
 int dvi__action_forces_count(const dvi__action *a)
 {
-  return dvi__action_has_fixed_point(a) ? a->n * a->fixed_point.stages : 0;
+  const int stages = a->transformed != NULL ? 2 * a->r : a->fixed_point.stages;
+  return dvi__action_has_fixed_point(a) ? a->n * stages : 0;
 }
 
 /* Give the forces of a path that the rows have. */
@@ -354,7 +411,9 @@ void dvi__action_forces(const dvi__action *a, double *g)
 {
   const size_t numbers = (size_t)dvi__action_forces_count(a);
   if (numbers == 0) return;
-  if (a->iterated)
+  if (a->transformed != NULL)
+    dvi__transformed_flows(a, g);
+  else if (a->iterated)
     memcpy(g, a->fixed_point.force, numbers * sizeof(double));
   else
     forces_of_rows(a, g);

@@ -43,24 +43,48 @@ static size_t place_of_body(const pair *p, int body, size_t i)
   return ((size_t)body * (size_t)p->own->dimension + i) * p->count;
 }
 
-/* Return coordinate i of the difference from b to a, at point k. */
-static double pair_difference(const pair *p, size_t i, size_t k)
+/* Write coordinate i of the difference from b to a, at all points. */
+static void pair_difference(const pair *p, size_t i, double *restrict d)
 {
-  return p->q[place_of_body(p, p->a, i) + k] - (p->b < 0 ? 0 : p->q[place_of_body(p, p->b, i) + k]);
+  const double *a = p->q + place_of_body(p, p->a, i);
+  if (p->b < 0) {
+    memcpy(d, a, p->count * sizeof *d);
+    return;
+  }
+  const double *b = p->q + place_of_body(p, p->b, i);
+  for (size_t k = 0; k < p->count; k++) d[k] = a[k] - b[k];
 }
 
-/* Compute r^2 and r^-p at all points. */
-static void pair_rates(const pair *p, double *square, double *rate)
+/* Compute the difference d [dimension*count], r^2 and r^-p at all points. */
+static void pair_rates(const pair *p, double *restrict d, double *restrict square,
+                       double *restrict rate)
 {
   const double power = p->own->power;
   memset(square, 0, p->count * sizeof *square);
-  for (size_t i = 0; i < (size_t)p->own->dimension; i++)
-    for (size_t k = 0; k < p->count; k++)
-      square[k] += pair_difference(p, i, k) * pair_difference(p, i, k);
+  for (size_t i = 0; i < (size_t)p->own->dimension; i++) {
+    double *d_i = d + i * p->count;
+    pair_difference(p, i, d_i);
+    for (size_t k = 0; k < p->count; k++) square[k] += d_i[k] * d_i[k];
+  }
   if (power == 1.5)
     for (size_t k = 0; k < p->count; k++) rate[k] = 1 / sqrt(square[k] * sqrt(square[k]));
   else
     for (size_t k = 0; k < p->count; k++) rate[k] = pow(square[k], -0.5 * power);
+}
+
+/* Add the pair's part of S_q. rate becomes -p r^-(p+2). */
+static void add_pair_slope(const pair *p, const double *restrict d, const double *restrict square,
+                           double *restrict rate, double *restrict S_q)
+{
+  const double power = p->own->power;
+  for (size_t k = 0; k < p->count; k++) rate[k] = -power * rate[k] / square[k];
+  for (size_t i = 0; i < (size_t)p->own->dimension; i++, d += p->count) {
+    double *a = S_q + place_of_body(p, p->a, i);
+    for (size_t k = 0; k < p->count; k++) a[k] += rate[k] * d[k];
+    if (p->b < 0) continue;
+    double *b = S_q + place_of_body(p, p->b, i);
+    for (size_t k = 0; k < p->count; k++) b[k] -= rate[k] * d[k];
+  }
 }
 
 /* Compute g, and S_q [n*count] unless it is NULL. */
@@ -71,15 +95,9 @@ static void distance_gradients(const dvi__built_in *own, int count, const double
   memset(g, 0, p.count * sizeof *g);
   if (S_q != NULL) memset(S_q, 0, (size_t)own->n * p.count * sizeof *S_q);
   do {
-    pair_rates(&p, own->square, own->rate);
+    pair_rates(&p, own->a, own->square, own->rate);
     for (size_t k = 0; k < p.count; k++) g[k] += own->rate[k];
-    for (size_t i = 0; S_q != NULL && i < (size_t)own->dimension; i++)
-      for (size_t k = 0; k < p.count; k++) {
-        const double slope = -own->power * own->rate[k] / own->square[k] *
-                             pair_difference(&p, i, k);
-        S_q[place_of_body(&p, p.a, i) + k] += slope;
-        if (p.b >= 0) S_q[place_of_body(&p, p.b, i) + k] -= slope;
-      }
+    if (S_q != NULL) add_pair_slope(&p, own->a, own->square, own->rate, S_q);
   } while (next_pair(&p));
   for (size_t k = 0; k < p.count; k++) g[k] = 1 / g[k];
 }
@@ -116,7 +134,7 @@ static void add_pair_curvature(const pair *p, double *S_qq)
   for (size_t e = 0; e < d * d * p->count; e++) {
     const size_t k = e % p->count, i = e / p->count % d, j = e / p->count / d;
     const double square = p->own->square[k], factor = power * p->own->rate[k] / square;
-    const double d_i = pair_difference(p, i, k), d_j = pair_difference(p, j, k);
+    const double d_i = p->own->a[i * p->count + k], d_j = p->own->a[j * p->count + k];
     const double change = factor * ((power + 2) * d_i * d_j / square - (i == j));
     add_body_entry(p, p->a, i, p->a, j, k, change, S_qq);
     if (p->b < 0) continue;
@@ -136,7 +154,7 @@ static int distance_hessian(int count, const double *t, const double *q, double 
   memset(g_qq, 0, n * n * points * sizeof *g_qq);
   distance_gradients(own, count, q, own->g, S_q);
   do {
-    pair_rates(&p, own->square, own->rate);
+    pair_rates(&p, own->a, own->square, own->rate);
     add_pair_curvature(&p, g_qq);
   } while (next_pair(&p));
   for (size_t j = 0; j < n; j++)

@@ -1,8 +1,10 @@
 #include "system/rescale/monitor.h"
 
 #include <dvi/number.h>
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "core/memory.h"
 #include "core/status.h"
@@ -133,15 +135,15 @@ static dvi_status allocate_built_in(dvi__built_in *own, const dvi_monitor *given
   own->square = DVI_NEW(double, capacity);
   own->rate = DVI_NEW(double, capacity);
   own->V_q = DVI_NEW(double, numbers);
-  if (!own->g || !own->square || !own->rate || !own->V_q)
+  own->a = DVI_NEW(double, numbers);
+  if (!own->g || !own->square || !own->rate || !own->V_q || !own->a)
     return dvi__fail(DVI_NO_MEMORY, "monitor: no memory");
   if (given->kind == DVI_MONITOR_DISTANCE) return DVI_OK;
   DVI_TRY(
       dvi__evaluator_create(own->system, (int)capacity, DVI__HESSIANS, counters, &own->evaluator));
   own->zero = DVI_NEW(double, numbers);
-  own->a = DVI_NEW(double, numbers);
   own->V_qq = DVI_NEW(double, (1 + (size_t)dvi__pattern_entries(&own->system->qq)) * capacity);
-  return own->zero && own->a && own->V_qq ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "monitor: no memory");
+  return own->zero && own->V_qq ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "monitor: no memory");
 }
 
 static dvi_status monitor_fill(dvi__monitor *m, const dvi_system *system, const dvi_monitor *given,
@@ -208,20 +210,47 @@ void dvi__monitor_set_energy(dvi__monitor *monitor, double energy)
 
 /* ---- evaluation ---- */
 
-dvi_status dvi__monitor_value(dvi__monitor *m, int count, const double *q, double *g)
+/* Every comparison with NaN is false. */
+static int is_positive(double g)
 {
-  DVI_TRY(dvi__potential_value(&m->system->potentials[0], &m->scratch, count, m->t, q, g));
-  for (int k = 0; k < count; k++)
-    if (!(g[k] > 0) || !isfinite(1 / g[k]))
+  return (g > 0) & (g <= DBL_MAX) & (1 / g <= DBL_MAX);
+}
+
+static dvi_status check_positive(const dvi__monitor *m, int count, const double *g)
+{
+  int positive = 1;
+  for (int k = 0; k < count; k++) positive &= is_positive(g[k]);
+  for (int k = 0; k < count && !positive; k++)
+    if (!is_positive(g[k]))
       return dvi__fail(DVI_NOT_FINITE,
                        "monitor %s is %g; it must be positive and finite, and so must 1/g", m->name,
                        g[k]);
   return DVI_OK;
 }
 
+dvi_status dvi__monitor_value(dvi__monitor *m, int count, const double *q, double *g)
+{
+  DVI_TRY(dvi__potential_value(&m->system->potentials[0], &m->scratch, count, m->t, q, g));
+  return check_positive(m, count, g);
+}
+
 dvi_status dvi__monitor_gradient(dvi__monitor *m, int count, const double *q, double *g_q)
 {
   return dvi__potential_gradient(&m->system->potentials[0], &m->scratch, count, m->t, q, g_q);
+}
+
+dvi_status dvi__monitor_rates(dvi__monitor *m, int count, const double *q, double *g, double *g_q)
+{
+  const double *built_in = m->built_in.g;
+  if (built_in == NULL) {
+    DVI_TRY(dvi__monitor_value(m, count, q, g));
+    return dvi__monitor_gradient(m, count, q, g_q);
+  }
+  const dvi_status status = dvi__monitor_gradient(m, count, q, g_q);
+  if (status > 0) DVI_TRY(dvi__monitor_value(m, count, q, g)); /* its sentence comes first */
+  if (status != DVI_OK) return status;
+  memcpy(g, built_in, (size_t)count * sizeof *g);
+  return check_positive(m, count, g);
 }
 
 dvi_status dvi__monitor_hessian(dvi__monitor *m, int count, const double *q, double *g_qq)

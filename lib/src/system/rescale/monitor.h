@@ -26,9 +26,12 @@ double dvi__monitor_noise(const dvi__monitor *monitor);
 void dvi__monitor_set_energy(dvi__monitor *monitor, double energy);
 
 /* Compute g [count], g_q [n*count], and g_qq [n*n*count], full, entry-major, which needs
- * DVI__HESSIANS. Return DVI_NOT_FINITE unless g is positive and finite. */
+ * DVI__HESSIANS. Return DVI_NOT_FINITE unless g is positive and finite. dvi__monitor_rates computes
+ * both g and g_q. */
 dvi_status dvi__monitor_value(dvi__monitor *monitor, int count, const double *q, double *g);
 dvi_status dvi__monitor_gradient(dvi__monitor *monitor, int count, const double *q, double *g_q);
+dvi_status dvi__monitor_rates(dvi__monitor *monitor, int count, const double *q, double *g,
+                              double *g_q);
 dvi_status dvi__monitor_hessian(dvi__monitor *monitor, int count, const double *q, double *g_qq);
 
 /* ---- built-in monitors, for monitor.c ---- */
@@ -39,9 +42,11 @@ typedef struct dvi__built_in {
   double power, energy; /* exponent p, and E0 */
   int n, bodies, dimension;
   dvi__evaluator *evaluator; /* evaluator of the system, NULL if only distances are needed */
-  double *g, *square, *rate; /* g, and r^2 and r^-power of a pair, [capacity] */
-  double *zero, *V_q, *a;    /* zero velocity, V_q and M^-1 V_q, [n*capacity] */
-  double *V_qq;              /* Hessian [entries*capacity] */
+  /* g, left there by every gradient, and r^2 and r^-power of a pair, or V_q.a, [capacity] */
+  double *g, *square, *rate;
+  /* zero velocity, V_q, and M^-1 V_q or the differences of a pair, [n*capacity] */
+  double *zero, *V_q, *a;
+  double *V_qq; /* Hessian [entries*capacity] */
 } dvi__built_in;
 
 /* Fill in the callbacks (distance.c, motion.c). */

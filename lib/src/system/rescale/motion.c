@@ -85,12 +85,15 @@ static int acceleration_gradient(int count, const double *t, const double *q, do
                                  void *user)
 {
   const dvi__built_in *own = user;
-  dvi_status status = find_accelerations(own, count, t, q, own->g);
+  const size_t points = (size_t)count;
+  dvi_status status = find_accelerations(own, count, t, q, own->square);
   if (status == DVI_OK) status = curvature_along(own, count, t, q, g_q);
-  for (size_t i = 0, k = 0; status == DVI_OK && i < (size_t)own->n * (size_t)count;
-       i++, k = i % (size_t)count)
-    g_q[i] *= own->power * pow(own->g[k], -0.5 * own->power - 1);
-  return (int)status;
+  if (status != DVI_OK) return (int)status;
+  for (size_t k = 0; k < points; k++) own->g[k] = pow(own->square[k], -0.5 * own->power);
+  for (size_t i = 0; i < (size_t)own->n; i++)
+    for (size_t k = 0; k < points; k++)
+      g_q[i * points + k] *= own->power * own->g[k] / own->square[k];
+  return DVI_OK;
 }
 
 void dvi__acceleration_callbacks(dvi_potential *function)

@@ -17,6 +17,7 @@
 #include "core/status.h"
 #include "num/finite.h"
 #include "system/evaluate/dynamics.h"
+#include "system/evaluate/evaluator_struct.h"
 
 /* Work for a batch, all in one block. */
 typedef struct work {
@@ -27,6 +28,10 @@ typedef struct work {
   /* Hessians [entries*capacity] of g, and of the system's L */
   double *g_qq, *base_qq, *base_qv, *base_vv;
 } work;
+
+/* Numbers of the Hessians for which there is room at first. Most steps of small systems need no
+ * more. */
+enum { SMALL_HESSIANS = 64 };
 
 struct dvi__transformed {
   const dvi_system *base;
@@ -313,7 +318,7 @@ static dvi_status transformed_fill(dvi__transformed *x, const dvi_system *system
     return dvi__fail(DVI_UNSUPPORTED,
                      "the system declares noise, which is that of equal steps of time");
   DVI_TRY(dvi__system_prepare_hessian(system));
-  DVI_TRY(transformed_reserve(x, 1));
+  DVI_TRY(transformed_reserve(x, 1 + SMALL_HESSIANS / system->n / system->n));
   return make_transformed_system(x);
 }
 
@@ -350,6 +355,29 @@ dvi__transformed *dvi__transformed_of(const dvi_system *system)
 {
   const dvi__lagrangian_term *term = system->lagrangian;
   return term != NULL && term->computed == &computed ? term->of : NULL;
+}
+
+const double *dvi__transformed_masses(const dvi__transformed *x)
+{
+  const dvi_system *base = x->base;
+  return base->lagrangian == NULL && base->vector == NULL && base->slots == NULL
+             ? base->mass_diagonal
+             : NULL;
+}
+
+dvi_status dvi__transformed_evaluate(dvi__transformed *x, int count, const double *t,
+                                     const double *q, const dvi__rescaled *at)
+{
+  double *term = x->work.lag;
+  DVI_TRY(dvi__monitor_rates(x->monitor, count, q, at->g, at->g_q));
+  x->counters->values += count;
+  for (int k = 0; k < count; k++) at->V[k] = -x->energy;
+  for (int p = 0; p < x->base->potential_count; p++) {
+    DVI_TRY(
+        dvi__potential_value(&x->base->potentials[p], &x->evaluator->scratch, count, t, q, term));
+    for (int k = 0; k < count; k++) at->V[k] += term[k];
+  }
+  return dvi__potentials_gradient(x->evaluator, count, t, q, at->V_q);
 }
 
 dvi__monitor *dvi__transformed_monitor(const dvi__transformed *x)

@@ -26,6 +26,19 @@ dvi__transformed *dvi__transformed_of(const dvi_system *system);
 /* Return the monitor, which is valid until room is made for larger batches. */
 dvi__monitor *dvi__transformed_monitor(const dvi__transformed *transformed);
 
+/* Return the masses [n] of L = v.Mv/2 - V with a constant mass without coupling, and NULL for all
+ * other systems. */
+const double *dvi__transformed_masses(const dvi__transformed *transformed);
+
+/* Compute what Lg and its derivatives are made of then, at `count` places: g and V - E0 [count],
+ * g_q and V_q [n*count]. */
+typedef struct dvi__rescaled {
+  double *g, *g_q, *V, *V_q;
+} dvi__rescaled;
+
+dvi_status dvi__transformed_evaluate(dvi__transformed *transformed, int count, const double *t,
+                                     const double *q, const dvi__rescaled *at);
+
 /* Set E0, which is NaN before. */
 void dvi__transformed_set_energy(dvi__transformed *transformed, double energy);
 
