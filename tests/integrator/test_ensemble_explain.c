@@ -20,7 +20,7 @@ START_TEST(explain_says_how_members_are_grouped)
   ck_assert_uint_eq(dvi_ensemble_explain(e, NULL, 0), length);
   ck_assert_str_eq(dvi_ensemble_method(e), "verlet:blocking=auto,threads=1");
   dvi_ensemble_destroy(&e);
-  e = create_ensemble(model->system, "galerkin:degree=16",
+  e = create_ensemble(model->system, "galerkin:solver=newton",
                       (dvi_ensemble_options){.members = 64, .threads = 2});
   (void)dvi_ensemble_explain(e, text, sizeof text);
   ck_assert_ptr_nonnull(strstr(text, "64 members in 64 blocks, one after the other, 2 threads\n"));
@@ -49,6 +49,8 @@ START_TEST(waves_are_not_given_up_for_members_as_lanes)
   explained("verlet:blocking=none", "n=40", "side by side");
   explained("composition", "n=40", "one after the other");
   explained("galerkin", "n=40", "side by side");
+  explained("galerkin:degree=8", "n=20", "side by side");
+  explained("galerkin:degree=8", "n=21", "one after the other");
 }
 END_TEST
 

@@ -20,24 +20,31 @@ DVI__EXPR_INLINE int is_plain(double x)
 
 /* Compute x^-(1/2 + factors) of plain numbers, right to two roundings for each root in it. A square
  * root and a division take longer. The exponent's bits, halved and negated, give y right to 3.5 %
- * (Lomont 2003). The series of (1 - e)^(-1/2) then shrinks e = 1 - x y^2. */
-DVI__EXPR_INLINE void inverse_powers(int width, const int factors, const double *restrict x,
-                                     double *restrict to)
+ * (Lomont 2003). The series of (1 - e)^(-1/2) then shrinks e = 1 - x y^2. Returns the number of
+ * plain ones. */
+DVI__EXPR_INLINE int inverse_powers(int width, const int factors, const double *restrict x,
+                                    double *restrict to)
 {
-  for (int k = 0; k < width; k++) {
-    uint64_t bits;
-    double y;
-    memcpy(&bits, x + k, sizeof bits);
-    bits = UINT64_C(0x5fe6eb50c7b537a9) - (bits >> 1);
-    memcpy(&y, &bits, sizeof y);
-    const double wide = 1.0 - x[k] * (y * y);
-    y += y * (wide * (0.5 + wide * (0.375 + wide * 0.3125)));
-    const double e = 1.0 - x[k] * (y * y);
-    y += y * (e * (0.5 + e * (0.375 + e * 0.3125)));
-    const double square = y * y;
-    for (int i = 0; i < factors; i++) y *= square;
-    to[k] = y;
-  }
+  uint64_t plain[DVI__LANES] = {0};
+  for (int first = 0; first < width; first += DVI__LANES)
+    DVI__EXPR_INDEPENDENT for (int k = 0; k < DVI__LANES; k++)
+    {
+      const double at = x[first + k];
+      uint64_t bits;
+      double y;
+      memcpy(&bits, &at, sizeof bits);
+      plain[k] += (uint64_t)is_plain(at);
+      bits = UINT64_C(0x5fe6eb50c7b537a9) - (bits >> 1);
+      memcpy(&y, &bits, sizeof y);
+      const double wide = 1.0 - at * (y * y);
+      y += y * (wide * (0.5 + wide * (0.375 + wide * 0.3125)));
+      const double e = 1.0 - at * (y * y);
+      y += y * (e * (0.5 + e * (0.375 + e * 0.3125)));
+      const double square = y * y;
+      for (int i = 0; i < factors; i++) y *= square;
+      to[first + k] = y;
+    }
+  return dvi__sum_lanes(plain);
 }
 
 /* Compute x^n, n = 1, 2, .. or x^-n. */
@@ -90,14 +97,10 @@ DVI__EXPR_INLINE void inverse_root_powers(int width, double exponent, const doub
                                           double *restrict to)
 {
   const int factors = (int)-exponent;
-  int plain = 0;
-  for (int k = 0; k < width; k++) plain += is_plain(x[k]);
-  switch (factors) {
-  case 0: inverse_powers(width, 0, x, to); break;
-  case 1: inverse_powers(width, 1, x, to); break;
-  case 2: inverse_powers(width, 2, x, to); break;
-  default: inverse_powers(width, factors, x, to);
-  }
+  const int plain = factors == 0   ? inverse_powers(width, 0, x, to)
+                    : factors == 1 ? inverse_powers(width, 1, x, to)
+                    : factors == 2 ? inverse_powers(width, 2, x, to)
+                                   : inverse_powers(width, factors, x, to);
   for (int k = 0; plain < width && k < width; k++) {
     if (is_plain(x[k])) continue;
     to[k] = 1.0 / sqrt(x[k]);

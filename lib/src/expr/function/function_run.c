@@ -363,12 +363,13 @@ static void run_tile(const dvi__part *part, const tile *at, const double *const 
                result);
 }
 
+/* Run tiles from the shape's first point on. */
 static void run_tiles(const dvi__part *part, const tile *shape, const double *const *x,
                       double *const *result, const double **input, double *memory)
 {
   const int all = part->kernel->elements;
   tile at = *shape;
-  for (at.point = 0; at.point < at.count; at.point += shape->points) {
+  for (; at.point < at.count; at.point += shape->points) {
     at.points = at.count - at.point < shape->points ? at.count - at.point : shape->points;
     for (at.first = 0; at.first < all; at.first += at.elements) {
       at.elements = all - at.first < shape->elements ? all - at.first : shape->elements;
@@ -409,6 +410,7 @@ dvi_status dvi__part_plan(dvi__part *part)
   part->unit = dvi__unit_size(all, 0);
   part->lanes = lanes_for(part, SMALL);
   part->large = part->lanes < part->unit;
+  part->takes_points = dvi__part_takes_points(part);
   if (!part->large) return DVI_OK;
   part->lanes = lanes_for(part, MIDDLE);
   const int least = dvi__row_width(part->unit);
@@ -416,22 +418,24 @@ dvi_status dvi__part_plan(dvi__part *part)
   return least <= large ? DVI_OK : DVI_BAD_SIZE;
 }
 
-/* Clear the entries that a part stores. Tiles are added, so that stored results are added to
- * zero. */
-static void part_clear(const dvi__part *part, int count, double *const *result)
+/* Clear the entries that a part stores, from this point on. Tiles are added, so that stored results
+ * are added to zero. */
+static void part_clear(const dvi__part *part, int point, int count, double *const *result)
 {
   for (const dvi__destination *target = part->target; target < part->target + part->target_count;
        target++)
     for (int m = 0; target->sets && m <= target->mirrored; m++)
-      memset(result[target->array] + (m ? target->single_mirror : target->single) * count, 0,
-             (size_t)count * sizeof **result);
+      memset(result[target->array] + (m ? target->single_mirror : target->single) * count + point,
+             0, (size_t)(count - point) * sizeof **result);
 }
 
 static void run_part(const dvi__part *part, int count, const double *const *x,
                      double *const *result)
 {
-  const tile shape = shape_of(part, count);
-  if (part->kernel->elements == 1) part_clear(part, count, result);
+  tile shape = shape_of(part, count);
+  if (part->takes_points) shape.point = dvi__part_run_points(part, count, x, result);
+  if (shape.point == count) return;
+  if (part->kernel->elements == 1) part_clear(part, shape.point, count, result);
   if (part->large)
     run_large(part, &shape, x, result);
   else

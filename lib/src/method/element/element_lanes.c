@@ -1,6 +1,7 @@
 /* The element's step for members of an ensemble side by side. It is the cheapest way of
- * element_step.c alone, fixed point iteration from the continued last forces. Members for which
- * that would not be tried, or does not converge, are left to dvi__element_step. */
+ * element_step.c alone, fixed point iteration from the continued last forces, or on the continued
+ * last path. Members for which that would not be tried, or does not converge, are left to
+ * dvi__element_step. */
 #include <math.h>
 #include <string.h>
 
@@ -8,7 +9,7 @@
 #include "step/element/fixed_point.h"
 #include "core/memory.h"
 #include "core/status.h"
-#include "method/element/element_step.h"
+#include "method/element/element_struct.h"
 #include "num/compensated.h"
 #include "num/simd/lanes.h"
 #include "solve/progress.h"
@@ -24,28 +25,35 @@ typedef struct lanes {
   int *ended;       /* [width] lanes that ended with it */
 } lanes;
 
-/* A vector's worth of nodes fills the vectors of a single element. Members as lanes then gain only
- * as long as they all stay in the cache of the first level, and with two vectors' worth no more. */
-enum { NODES_OF_A_VECTOR = 8, POINTS_IN_CACHE = 64 };
+/* More than four nodes fill most of the vectors of a single element. Members as lanes then gain
+ * only as long as they stay in the caches. */
+enum { FEW_NODES = 4, POINTS_IN_CACHE = 160 };
 
-static int lanes_pay(int n, int nodes)
+static int lanes_pay(const dvi__action *action, int n)
 {
-  return nodes < NODES_OF_A_VECTOR ||
-         (nodes < 2 * NODES_OF_A_VECTOR && n <= POINTS_IN_CACHE / nodes);
+  const int nodes = dvi__action_nodes(action);
+  return (nodes <= FEW_NODES && dvi__action_has_fixed_point(action)) ||
+         n <= POINTS_IN_CACHE / nodes;
+}
+
+/* Tell whether the ladder begins with fixed point iteration by members' functions. */
+static int has_lanes(const dvi__stepper *self)
+{
+  const dvi__element *own = self->own;
+  return (own->choice == DVI__SOLVER_FIXED_POINT || own->choice == DVI__SOLVER_AUTO) &&
+         !own->keeps_whole && dvi__action_has_members(own->action) &&
+         dvi__system_has_gradients(self->system) && lanes_pay(own->action, self->system->n);
 }
 
 dvi_status dvi__element_prepare_lanes(dvi__stepper *self, int capacity)
 {
-  dvi__action *action = dvi__element_action(self);
-  const int solver = dvi__element_solver(self), patient = solver == DVI__SOLVER_FIXED_POINT;
-  if (!patient && solver != DVI__SOLVER_AUTO) return DVI_OK;
-  if (!lanes_pay(self->system->n, dvi__action_nodes(action))) return DVI_OK;
-  if (!dvi__action_has_fixed_point(action) || !dvi__system_has_gradients(self->system))
-    return DVI_OK;
+  const dvi__element *element = self->own;
+  if (!has_lanes(self)) return DVI_OK;
   lanes *own = self->lanes = DVI_NEW(lanes, 1);
   if (own == NULL) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
-  own->patient = patient;
-  own->criteria = dvi__fixed_point_criteria(patient, 1);
+  own->patient = element->choice == DVI__SOLVER_FIXED_POINT || element->without_hessian != NULL;
+  own->criteria = dvi__fixed_point_criteria(own->patient,
+                                            dvi__action_has_fixed_point(element->action));
   own->histories.last = DVI_NEW(double, capacity);
   own->histories.ratio = DVI_NEW(double, capacity);
   own->histories.contraction = DVI_NEW(double, capacity);
@@ -57,7 +65,7 @@ dvi_status dvi__element_prepare_lanes(dvi__stepper *self, int capacity)
   if (!own->histories.last || !own->histories.ratio || !own->histories.contraction ||
       !own->histories.own || !own->histories.size || !own->going || !own->verdict || !own->ended)
     return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
-  return dvi__action_members_create(action, capacity, &own->members);
+  return dvi__action_members_create(element->action, capacity, &own->members);
 }
 
 void dvi__element_clear_lanes(dvi__stepper *self)
@@ -108,7 +116,8 @@ static void lanes_close_up(lanes *own)
   memset(own->going, 1, (size_t)at->width);
 }
 
-static void lanes_begin(lanes *own, int n, size_t forces, const dvi__members *m, double h,
+/* Begin from numbers of the last step, which stand in the memory from `last` on. */
+static void lanes_begin(lanes *own, int n, size_t last, const dvi__members *m, double h,
                         double last_h)
 {
   const size_t count = (size_t)m->count;
@@ -125,7 +134,7 @@ static void lanes_begin(lanes *own, int n, size_t forces, const dvi__members *m,
     }
   for (size_t k = 0; k < count; k++) own->going[k] = !m->left[k];
   dvi__action_members_place(&own->members, m->count, h, last_h, m->t, m->q, m->p,
-                            memory_row(m, forces));
+                            memory_row(m, last));
   lanes_close_up(own);
 }
 
@@ -208,7 +217,8 @@ void dvi__element_step_lanes(dvi__stepper *self, dvi__members *m, double h)
   lanes *own = self->lanes;
   const double last_h = lanes_choose(own, m);
   if (last_h == 0) return;
-  lanes_begin(own, self->system->n, dvi__element_forces(self), m, h, last_h);
+  const size_t last = own->members.chord != NULL ? DVI__LAST_Y : dvi__element_forces(self);
+  lanes_begin(own, self->system->n, last, m, h, last_h);
   lanes_iterate(own, m);
   dvi__action_members_ends(&own->members, memory_row(m, DVI__LAST_Y));
   lanes_advance(own, (size_t)self->system->n, m, h);

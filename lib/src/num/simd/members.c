@@ -4,16 +4,11 @@
 #include <string.h>
 
 #include "num/simd/lanes.h"
+#include "num/simd/tails.h"
 #include "num/simd/width.h"
 
 #define LOOPS "num/simd/members_width.h"
 #include "num/simd/each_width.h"
-
-/* Make whole vectors first, the rest in shorter ones. */
-#define TAIL2(name, ...) name##2(__VA_ARGS__, 0)
-#define TAIL4(name, ...) name##2(__VA_ARGS__, name##4(__VA_ARGS__, 0))
-#define TAIL8(name, ...) name##2(__VA_ARGS__, name##4(__VA_ARGS__, name##8(__VA_ARGS__, 0)))
-#define ALL(width, name, ...) ((void)name##1(__VA_ARGS__, TAIL##width(name, __VA_ARGS__)))
 
 /* Members are lanes where stages are few, and these loops are worth knowing at compile time. */
 #define ITERATE(width)                                             \
@@ -24,6 +19,9 @@
     case 2: ALL(width, iterate, s, 2); break;                      \
     case 3: ALL(width, iterate, s, 3); break;                      \
     case 4: ALL(width, iterate, s, 4); break;                      \
+    case 5: ALL(width, iterate, s, 5); break;                      \
+    case 6: ALL(width, iterate, s, 6); break;                      \
+    case 7: ALL(width, iterate, s, 7); break;                      \
     case 8: ALL(width, iterate, s, 8); break;                      \
     default: ALL(width, iterate, s, s->stages);                    \
     }                                                              \

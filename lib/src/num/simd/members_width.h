@@ -93,23 +93,41 @@ INLINE int NAME(begin)(const dvi__members_fixed_point *s, int m)
   return m;
 }
 
-/* Iterate for WIDTH members of one coordinate. All forces are weighed, then the stages move. */
+/* Give row j of the matrix times g, as `row` does, for up to eight terms in registers. */
+INLINE void NAME(known_row)(const int terms, int lanes, const double *row, const NAME(vector) * g,
+                            NAME(vector) * out)
+{
+  NAME(vector) sum = {0}, four[4];
+  for (int k = 0; k < 4 && terms == 8; k++)
+    four[k] = g[k] * row[k * lanes] + g[k + 4] * row[(k + 4) * lanes];
+  for (int k = 0; k < terms && terms < 8; k++) sum += g[k] * row[k * lanes];
+  *out = terms == 8 ? (four[0] + four[1]) + (four[2] + four[3]) : sum;
+}
+
+/* Iterate for WIDTH members of one coordinate. All forces are weighed, then the stages move. Up to
+ * eight stages, known at compile time, have their forces in registers. */
 INLINE void NAME(iterate_at)(const dvi__members_fixed_point *s, const int stages, size_t i, int m,
                              NAME(vector) * change, NAME(vector) * largest)
 {
   const size_t width = (size_t)s->width, at = i * (size_t)stages * width + (size_t)m;
   double *restrict force = s->force + at, *restrict Z = s->Z + at, *restrict Q = s->Q + at;
+  const int known = __builtin_constant_p(stages) && stages <= 8;
   NAME(base) base;
+  NAME(vector) g[8];
   NAME(load_base)(s, i, m, &base);
   for (size_t j = 0; j < (size_t)stages; j++) {
     NAME(vector) value;
     NAME(load)(force + j * width, &value);
     value = value * s->weight[j];
     NAME(store)(force + j * width, &value, WIDTH);
+    if (known) g[j] = value;
   }
   for (size_t j = 0; j < (size_t)stages; j++) {
     NAME(vector) sum, before, next;
-    NAME(row)(stages, s->lanes, s->matrix + j, s->width, force, &sum);
+    if (known)
+      NAME(known_row)(stages, s->lanes, s->matrix + j, g, &sum);
+    else
+      NAME(row)(stages, s->lanes, s->matrix + j, s->width, force, &sum);
     NAME(load)(Z + j * width, &before);
     NAME(place)(&base, s->node[j], &sum, &next, Z + j * width, Q + j * width);
     const NAME(vector) moved = before - next;

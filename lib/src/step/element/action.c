@@ -4,7 +4,6 @@
 
 #include "step/element/action_struct.h"
 #include "step/element/fixed_point.h"
-#include "step/element/table.h"
 #include "core/memory.h"
 #include "core/status.h"
 

@@ -112,9 +112,13 @@ struct dvi__action {
  * the s functions. */
 enum { DVI__CHORD_INVERSE = 8 };
 
+/* Allocate and fill all tables of the space (table.c). */
+dvi_status dvi__action_fill_tables(dvi__action *action);
+
 /* Give the table from the last step's forces to the sums of forces in a step `ratio` times as long,
- * [r*lanes] by columns. */
+ * [r*lanes] by columns, and that from the last path to the continued one, [s*path_lanes]. */
 const double *dvi__action_fixed_point_shift(dvi__action *action, double ratio);
+const double *dvi__action_path_shift(dvi__action *action, double ratio);
 
 /* Prepare the tables below. DVI_NO_MEMORY. */
 dvi_status dvi__action_prepare_continuation(dvi__action *action);

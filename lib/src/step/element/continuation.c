@@ -39,13 +39,18 @@ static void fill_path_shift(const dvi__action *a, double ratio, double *shift)
     for (size_t l = 0; l < s; l++) shift[l * lanes + k] = a->shift_rows[k * s + l];
 }
 
-void dvi__action_continue(dvi__action *a, double ratio, const double *last, double *Y)
+const double *dvi__action_path_shift(dvi__action *a, double ratio)
 {
   int known;
   double *shift = table_for(&a->shift, (size_t)a->s * (size_t)a->path_lanes, ratio, &known);
   if (!known) fill_path_shift(a, ratio, shift);
+  return shift;
+}
+
+void dvi__action_continue(dvi__action *a, double ratio, const double *last, double *Y)
+{
   const size_t of_path = (size_t)a->n * (size_t)a->s;
-  dvi__lanes_product(a->n, a->s, a->path_lanes, a->s, shift, last, Y);
+  dvi__lanes_product(a->n, a->s, a->path_lanes, a->s, dvi__action_path_shift(a, ratio), last, Y);
   for (size_t k = 0; k < (size_t)a->terms.unknowns; k++) Y[of_path + k] = last[of_path + k];
 }
 

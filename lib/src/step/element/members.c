@@ -3,22 +3,24 @@
 #include <string.h>
 
 #include "step/element/action_struct.h"
+#include "step/element/fixed_point.h"
 #include "core/memory.h"
 #include "core/status.h"
 #include "num/simd/members.h"
 
-static int members_allocate(dvi__action_members *m, size_t capacity)
+int dvi__action_has_members(const dvi__action *a)
+{
+  return dvi__action_has_fixed_point(a) || dvi__action_has_chord_members(a);
+}
+
+/* Allocate the numbers of fixed_point.h. */
+static int members_allocate_stages(dvi__action_members *m, size_t capacity)
 {
   const size_t n = (size_t)m->action->n, r = (size_t)m->action->r,
                stages = (size_t)m->action->fixed_point.stages;
   double **const rows[] = {&m->packed_start, &m->packed_low, &m->packed_origin, &m->all_start,
-                           &m->all_low,      &m->dq,         &m->dq_low,        &m->dp};
+                           &m->all_low};
   int complete = 1;
-  m->member = DVI_NEW(int, capacity);
-  m->going = DVI_NEW(int, capacity);
-  m->change = DVI_NEW(double, capacity);
-  m->largest = DVI_NEW(double, capacity);
-  m->t = DVI_NEW(double, r *capacity);
   m->Z = DVI_NEW(double, n *stages *capacity);
   m->Q = DVI_NEW(double, n *stages *capacity);
   m->force = DVI_NEW(double, n *stages *capacity);
@@ -40,18 +42,37 @@ static int members_allocate(dvi__action_members *m, size_t capacity)
     *rows[i] = DVI_NEW(double, n *capacity);
     complete = complete && *rows[i] != NULL;
   }
-  return complete && m->member && m->going && m->change && m->largest && m->t && m->Z && m->Q &&
-         m->force;
+  return complete && m->Z && m->Q && m->force;
+}
+
+static int members_allocate(dvi__action_members *m, size_t capacity)
+{
+  const size_t n = (size_t)m->action->n, r = (size_t)m->action->r;
+  m->member = DVI_NEW(int, capacity);
+  m->going = DVI_NEW(int, capacity);
+  m->change = DVI_NEW(double, capacity);
+  m->largest = DVI_NEW(double, capacity);
+  m->t = DVI_NEW(double, r *capacity);
+  m->dq = DVI_NEW(double, n *capacity);
+  m->dq_low = DVI_NEW(double, n *capacity);
+  m->dp = DVI_NEW(double, n *capacity);
+  return m->member && m->going && m->change && m->largest && m->t && m->dq && m->dq_low && m->dp;
 }
 
 dvi_status dvi__action_members_create(dvi__action *action, int capacity,
                                       dvi__action_members *members)
 {
   *members = (dvi__action_members){.action = action};
-  /* Without counters, because the caller knows the cost of a member. */
-  DVI_TRY(dvi__evaluator_create(action->system, capacity * action->r, DVI__GRADIENTS, NULL,
+  /* Without counters, because the caller knows the cost of a member. The chord solves for s
+   * functions. */
+  const int points = action->r > action->s ? action->r : action->s;
+  DVI_TRY(dvi__evaluator_create(action->system, capacity * points, DVI__GRADIENTS, NULL,
                                 &members->evaluator));
-  if (members_allocate(members, (size_t)capacity)) return DVI_OK;
+  if (!members_allocate(members, (size_t)capacity))
+    return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d members", capacity);
+  if (!dvi__action_has_fixed_point(action))
+    return dvi__chord_members_create(members, (size_t)capacity);
+  if (members_allocate_stages(members, (size_t)capacity)) return DVI_OK;
   return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d members", capacity);
 }
 
@@ -79,6 +100,7 @@ void dvi__action_members_clear(dvi__action_members *m)
                            m->batch[1],
                            m->batch[2],
                            m->batch[3]};
+  dvi__chord_members_clear(m);
   for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) dvi__release(owned[i]);
   dvi__release(m->member);
   dvi__release(m->going);
@@ -128,20 +150,24 @@ static void members_put_nodes(dvi__action_members *m, double ratio)
 }
 
 void dvi__action_members_place(dvi__action_members *m, int count, double h, double last_h,
-                               const double *t, const double *q, const double *p, double *forces)
+                               const double *t, const double *q, const double *p, double *last)
 {
   dvi__action *a = m->action;
   m->count = m->width = count;
   m->start = m->all_start;
   m->low = m->all_low;
   m->origin = q;
+  m->t0 = t;
   m->p = p;
-  m->forces = forces;
+  m->forces = last;
   for (int k = 0; k < count; k++) m->member[k] = k;
   for (size_t j = 0; j < (size_t)a->r; j++)
     for (size_t k = 0; k < (size_t)count; k++) m->t[members_row(m, j) + k] = t[k] + a->node[j] * h;
   a->h = h;
-  members_put_nodes(m, h / last_h);
+  if (m->chord != NULL)
+    dvi__chord_members_place(m, h / last_h);
+  else
+    members_put_nodes(m, h / last_h);
 }
 
 void dvi__action_members_pack(const dvi__action_members *m, int rows, int before, const double *x,
@@ -167,6 +193,10 @@ void dvi__action_members_close_up(dvi__action_members *m, const char *marked)
   if (lanes == before) return;
   m->width = lanes;
   dvi__action_members_pack(m, r, before, m->t, m->t);
+  if (m->chord != NULL) {
+    dvi__chord_members_pack(m, before);
+    return;
+  }
   dvi__action_members_pack(m, n * stages, before, m->Z, m->Z);
   dvi__action_members_pack(m, n * stages, before, m->Q, m->Q);
   dvi__action_members_pack(m, n, before, m->start, m->packed_start);
@@ -200,6 +230,7 @@ static dvi_status members_evaluate_stages(dvi__action_members *m)
 
 dvi_status dvi__action_members_iterate(dvi__action_members *m)
 {
+  if (m->chord != NULL) return dvi__chord_members_iterate(m);
   DVI_TRY(m->kinetic != NULL ? members_evaluate_stages(m)
                              : dvi__potentials_gradient(m->evaluator, m->action->r * m->width, m->t,
                                                         m->Q, m->force));
@@ -213,6 +244,10 @@ dvi_status dvi__action_members_iterate(dvi__action_members *m)
 
 void dvi__action_members_keep(dvi__action_members *m, int lane)
 {
+  if (m->chord != NULL) {
+    dvi__chord_members_keep(m, lane);
+    return;
+  }
   const size_t rows = (size_t)m->action->n * (size_t)m->action->fixed_point.stages,
                count = (size_t)m->count;
   double *kept = m->forces + m->member[lane];
@@ -243,6 +278,7 @@ void dvi__action_members_ends(dvi__action_members *m, double *Y)
   const dvi__action *a = m->action;
   const size_t n = (size_t)a->n, s = (size_t)a->s, count = (size_t)m->count;
   const int has_velocities = m->kinetic != NULL;
+  if (m->chord != NULL) return;
   dvi__members_product(a->n, a->fixed_point.stages, a->path_lanes, a->s, a->fixed_point.path,
                        m->count, m->forces, Y);
   for (size_t i = 0; i < n * s; i++) {

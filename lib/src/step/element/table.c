@@ -1,4 +1,3 @@
-#include "step/element/table.h"
 
 #include <float.h>
 #include <math.h>
