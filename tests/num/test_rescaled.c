@@ -139,7 +139,7 @@ static void plain_move(dvi__rescaled_sums *s)
 
 static void plain_iterate(dvi__rescaled_sums *s)
 {
-  memcpy(s->next, s->Z, (size_t)(N * s->lanes) * sizeof(double));
+  for (int k = 0; k < N * s->lanes; k++) s->next[k] = s->Z[k];
   for (int sweep = 0; sweep < SWEEPS; sweep++) {
     plain_forces(s);
     plain_momenta(s);
@@ -208,11 +208,26 @@ START_TEST(one_number_that_is_not_a_number_is_seen_anywhere)
 }
 END_TEST
 
+START_TEST(powers_of_distances_have_the_bits_of_plain_loops)
+{
+  enum { COUNT = 31 };
+  double x[COUNT], power[COUNT];
+  dvi__lanes_choose(_i);
+  for (int count = 0; count <= COUNT; count++) {
+    for (int k = 0; k < count; k++) x[k] = exp(sin(1.0 + k + count) * 20);
+    dvi__rescaled_distances((size_t)count, x, power);
+    for (int k = 0; k < count; k++) ck_assert_double_eq(power[k], 1 / sqrt(x[k] * sqrt(x[k])));
+  }
+}
+END_TEST
+
 SUITE(rescaled)
 {
   tcase_add_checked_fixture(tests, NULL, best_again);
   tcase_add_loop_test(tests, an_iteration_has_the_bits_of_plain_loops, 0,
                       dvi__lanes_levels() * STAGES_MOST);
+  tcase_add_loop_test(tests, powers_of_distances_have_the_bits_of_plain_loops, 0,
+                      dvi__lanes_levels());
   tcase_add_loop_test(tests, one_number_that_is_not_a_number_is_seen_anywhere, 0,
                       dvi__lanes_levels() * STAGES_MOST);
 }

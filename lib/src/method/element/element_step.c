@@ -407,13 +407,11 @@ static dvi_status element_advance(dvi__stepper *self, dvi__state *state, double 
 {
   const dvi__element *own = self->own;
   const int n = self->system->n;
-  double duration;
-  DVI_TRY(dvi__action_duration(own->action, own->Y, &duration));
   element_keep_path(self, state->p);
   dvi__add_compensated_all(n, state->q, state->q_compensation, own->dq);
   dvi__add_compensated_all(n, state->q, state->q_compensation, own->dq_low);
   dvi__add_compensated_all(n, state->p, state->p_compensation, own->dp);
-  dvi__add_compensated(&state->t, &state->t_compensation, duration);
+  dvi__add_compensated(&state->t, &state->t_compensation, own->duration);
   if (state->supplied != NULL)
     dvi__add_compensated_all(1 + self->system->symmetry_count, state->supplied,
                              state->supplied_compensation, own->supply);
@@ -424,6 +422,7 @@ static dvi_status element_advance(dvi__stepper *self, dvi__state *state, double 
 static dvi_status element_ends(dvi__element *own, const double *Y)
 {
   dvi__action_ends(own->action, Y, own->dq, own->dq_low, own->dp);
+  DVI_TRY(dvi__action_duration(own->action, Y, &own->duration));
   return dvi__action_constrain_end(own->action, Y, own->dp);
 }
 

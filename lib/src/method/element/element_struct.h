@@ -62,6 +62,8 @@ typedef struct dvi__element {
   /* the place whose iteration starts from the last step's forces, NULL if it starts from Y */
   const dvi__element_place *forces_of;
   double *dq, *dq_low, *dp;
+  /* the time that passes in the step */
+  double duration;
   double *supply; /* [1 + symmetries] what forces supply in the step */
   double work;    /* what forces and time supply to the energy */
   double *guess;  /* [unknowns] guess of the iteration, in charts, or the last step's unknowns */

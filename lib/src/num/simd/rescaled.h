@@ -2,6 +2,7 @@
  * as lanes (lanes.h). */
 #ifndef DVI_NUM_SIMD_RESCALED_H
 #define DVI_NUM_SIMD_RESCALED_H
+#include <stddef.h>
 
 /* Sums of an iteration, from what was evaluated at the stages with the offsets Z,
  *
@@ -28,5 +29,8 @@ void dvi__rescaled_iterate(dvi__rescaled_sums *sums);
 
 /* Make P, Z and Q from u and f. */
 void dvi__rescaled_begin(const dvi__rescaled_sums *sums);
+
+/* Compute x_k^(-3/4), the square of a distance to the power of its monitor. */
+void dvi__rescaled_distances(size_t count, const double *x, double *power);
 
 #endif

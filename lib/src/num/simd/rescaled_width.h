@@ -65,12 +65,13 @@ INLINE void NAME(find_momenta)(const dvi__rescaled_sums *s, const int stages)
     }
 }
 
-INLINE void NAME(find_rates)(const dvi__rescaled_sums *s, const int stages)
+/* In the first sweep next is Z. */
+INLINE void NAME(find_rates)(const dvi__rescaled_sums *s, const int stages, int sweep)
 {
   for (int b = 0; b < s->lanes; b += WIDTH) {
     NAME(vector) weight, rate, g_q, next, Z, P;
     NAME(load)(s->g + b, &rate);
-    for (size_t i = 0; i < (size_t)s->n; i++) {
+    for (size_t i = 0; i < (size_t)s->n && sweep > 0; i++) {
       NAME(load)(s->g_q + i * (size_t)stages + (size_t)b, &g_q);
       NAME(load)(s->next + i * (size_t)s->lanes + (size_t)b, &next);
       NAME(load)(s->Z + i * (size_t)s->lanes + (size_t)b, &Z);
@@ -120,11 +121,10 @@ INLINE void NAME(move)(const dvi__rescaled_sums *s, const int stages, double *ch
 INLINE void NAME(rescaled_iterate)(dvi__rescaled_sums *s, const int stages)
 {
   const dvi__rescaled_sums own = *s; /* a copy, which nothing else writes */
-  memcpy(s->next, s->Z, (size_t)s->n * (size_t)s->lanes * sizeof(double));
   for (int sweep = 0; sweep < own.sweeps; sweep++) {
     NAME(find_forces)(&own, stages);
     NAME(find_momenta)(&own, stages);
-    NAME(find_rates)(&own, stages);
+    NAME(find_rates)(&own, stages, sweep);
     NAME(find_places)(&own, stages);
   }
   NAME(move)(&own, stages, &s->change, &s->largest);

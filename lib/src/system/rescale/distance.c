@@ -8,6 +8,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "num/simd/rescaled.h"
 #include "system/rescale/monitor.h"
 
 /* A batch of points, coordinate i of point k at q[i*count + k], and two of the bodies. b < 0 stands
@@ -67,7 +68,7 @@ static void pair_rates(const pair *p, double *restrict d, double *restrict squar
     for (size_t k = 0; k < p->count; k++) square[k] += d_i[k] * d_i[k];
   }
   if (power == 1.5)
-    for (size_t k = 0; k < p->count; k++) rate[k] = 1 / sqrt(square[k] * sqrt(square[k]));
+    dvi__rescaled_distances(p->count, square, rate);
   else
     for (size_t k = 0; k < p->count; k++) rate[k] = pow(square[k], -0.5 * power);
 }
