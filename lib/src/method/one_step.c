@@ -11,15 +11,24 @@ static size_t one_step_unknowns(const dvi__one_step *one)
   return (size_t)one->kind->pattern(one->of)->columns;
 }
 
+/* Give the place of the predictor's numbers. */
+static double *predictor_memory(const dvi__stepper *self)
+{
+  const dvi__one_step *one = self->own;
+  return self->memory + one->last + one_step_unknowns(one);
+}
+
 /* ---- create ---- */
 
 static int one_step_allocate(dvi__one_step *one, size_t n)
 {
+  one->predictor.unknowns = one_step_unknowns(one);
+  one->predictor.plain = DVI_NEW(double, one_step_unknowns(one));
   one->work = DVI_NEW(double, one_step_unknowns(one));
   one->dq = DVI_NEW(double, n);
   one->dp = DVI_NEW(double, n);
   one->carried = DVI_NEW(double, 2 * n);
-  return one->work && one->dq && one->dp && one->carried;
+  return one->predictor.plain && one->work && one->dq && one->dp && one->carried;
 }
 
 dvi_status dvi__one_step_create(dvi__stepper *self, size_t size, const dvi__step_kind *kind,
@@ -33,7 +42,8 @@ dvi_status dvi__one_step_create(dvi__stepper *self, size_t size, const dvi__step
   one->kind = kind;
   one->of = of;
   one->last = DVI__CARRIED + carried;
-  self->memory_count = one->last + one_step_unknowns(one);
+  self->memory_count = one->last + one_step_unknowns(one) +
+                       dvi__predictor_memory(one_step_unknowns(one));
   if (!one_step_allocate(one, (size_t)self->system->n))
     return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
   /* Coefficients of several kinds of functions have no common unit for each coordinate. */
@@ -47,7 +57,7 @@ dvi_status dvi__one_step_create(dvi__stepper *self, size_t size, const dvi__step
       .jacobian = kind->jacobian,
       .row_scale = kind->row_scale,
       .renewed = kind->renewed,
-      .ahead = kind->renewed};
+      .ahead = kind->renewed || (!kind->inexact && dvi__hessian_noise(self->system) == 0)};
   DVI_TRY(dvi__stationary_create(self, &equations, &one->equations));
   one->x = one->equations.x;
   /* Do not follow the branch for functions that change with h, and for steps over many periods. The
@@ -62,6 +72,7 @@ void dvi__one_step_destroy(dvi__stepper *self)
   if (one == NULL) return;
   dvi__stationary_clear(&one->equations);
   one->kind->destroy(one->of);
+  dvi__release(one->predictor.plain);
   dvi__release(one->work);
   dvi__release(one->dq);
   dvi__release(one->dp);
@@ -79,12 +90,15 @@ void dvi__one_step_start(dvi__stepper *self, const double *v)
 
 static dvi_status one_step_guess(dvi__stepper *self, double h, double *x)
 {
-  const dvi__one_step *one = self->own;
+  dvi__one_step *one = self->own;
   const double last_h = self->memory[DVI__LENGTH], *last = self->memory + one->last;
-  if (last_h != 0)
+  if (last_h != 0) {
     one->kind->continued(one->of, h / last_h, last, x);
-  else
+    dvi__predictor_correct(&one->predictor, predictor_memory(self), h, x);
+  } else {
     one->kind->straight(one->of, last, x);
+    dvi__predictor_leave(&one->predictor);
+  }
   return DVI_OK;
 }
 
@@ -113,13 +127,14 @@ dvi_status dvi__one_step_momentum(dvi__stepper *self, const dvi__state *state, d
 
 dvi_status dvi__one_step_move(dvi__stepper *self, dvi__state *state, double h, const double *last)
 {
-  const dvi__one_step *one = self->own;
+  dvi__one_step *one = self->own;
   double duration = h;
   if (one->kind->duration != NULL) DVI_TRY(one->kind->duration(one->of, one->x, &duration));
   dvi__add_compensated_all(self->system->n, state->q, state->q_compensation, one->dq);
   dvi__add_compensated(&state->t, &state->t_compensation, duration);
   self->memory[DVI__LENGTH] = h;
   memcpy(self->memory + one->last, last, one_step_unknowns(one) * sizeof(double));
+  dvi__predictor_learn(&one->predictor, predictor_memory(self), h, one->x);
   return DVI_OK;
 }
 

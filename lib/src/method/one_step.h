@@ -8,11 +8,13 @@
 #ifndef DVI_METHOD_ONE_STEP_H
 #define DVI_METHOD_ONE_STEP_H
 #include "core/status.h"
+#include "method/predictor.h"
 #include "method/stationary.h"
 
 /* The memory starts with the length of the last step (0 before the first step). The carried numbers
- * of the method follow. The last part is what the guess continues, as many numbers as unknowns.
- * Before the first step the velocity of the start stands there. */
+ * of the method follow. Behind them is what the guess continues, as many numbers as unknowns.
+ * Before the first step the velocity of the start stands there. The last part is that of the
+ * predictor. */
 enum { DVI__LENGTH, DVI__CARRIED };
 
 typedef struct dvi__step_kind {
@@ -33,6 +35,7 @@ typedef struct dvi__step_kind {
   /* Newton's method factors each Jacobian, because forces cost more than factors, and the step
    * corrects increments from the last point */
   int renewed;
+  int inexact; /* the Jacobian is not that of all rows */
 } dvi__step_kind;
 
 /* The own struct of a stepper begins with this struct. */
@@ -40,7 +43,8 @@ typedef struct dvi__one_step {
   const dvi__step_kind *kind;
   void *of; /* the step, of this kind */
   dvi__stationary equations;
-  size_t last;      /* place in the memory where the numbers for the next guess begin */
+  size_t last; /* place in the memory where the numbers for the next guess begin */
+  dvi__predictor predictor;
   double *x, *work; /* [unknowns] the solution, and work for the kind */
   double *dq, *dp;  /* [n] */
   double *carried;  /* [2 n] jump of the node, scaled to a part of the step */

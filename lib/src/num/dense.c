@@ -1,4 +1,4 @@
-/* Dense LU by LAPACK, with a condition estimate. */
+/* Dense LU, with a condition estimate: of small matrices by own loops, else by LAPACK. */
 #include <math.h>
 #include <string.h>
 
@@ -6,6 +6,7 @@
 #include "core/status.h"
 #include "num/dense.h"
 #include "num/factor.h"
+#include "num/simd/small_lu.h"
 
 /* LAPACK's Fortran interface. Character arguments carry a hidden length that gfortran passes
  * last. */
@@ -20,16 +21,24 @@ extern void dgecon_(const char *norm, const int *n, const double *a, const int *
                     size_t norm_length);
 
 typedef struct dense {
-  double *lu;   /* [n*n] by columns */
-  double *work; /* [4 n] */
+  int is_small;
+  dvi__small_lu small; /* the factor of a small matrix */
+  double *lu;          /* [n*n] by columns; of a small matrix it is work */
+  double *work;        /* [4 n] */
   int *pivot, *iwork;
+  double norm; /* 1-norm of the matrix */
   double reciprocal_condition;
 } dense;
+
+/* Where the pivots of a small matrix differ by less than this, it is not nearly singular, and its
+ * condition is not estimated. */
+static const double safe_pivots = 1e-6;
 
 static void dense_destroy(void *factor)
 {
   dense *d = factor;
   if (d == NULL) return;
+  dvi__release(d->small.upper);
   dvi__release(d->lu);
   dvi__release(d->work);
   dvi__release(d->pivot);
@@ -37,36 +46,89 @@ static void dense_destroy(void *factor)
   dvi__release(d);
 }
 
+static int dense_allocate_small(dense *d, int n)
+{
+  const int stride = dvi__small_lu_stride(n);
+  double *at = DVI_NEW(double, 2 * stride * stride + stride);
+  d->small = (dvi__small_lu){.n = n,
+                             .stride = stride,
+                             .upper = at,
+                             .lower = at + (at != NULL ? stride * stride : 0),
+                             .diagonal = at + (at != NULL ? 2 * stride * stride : 0),
+                             .pivot = d->pivot};
+  return at != NULL;
+}
+
 static dvi_status dense_create(const dvi__factor_form *form, void **factor)
 {
   const size_t n = (size_t)form->pattern->columns;
   dense *d = *factor = DVI_NEW(dense, 1);
   if (d == NULL) return dvi__fail(DVI_NO_MEMORY, "dense LU: no memory");
+  d->is_small = n <= DVI__SMALL_LU_MOST;
   d->lu = DVI_NEW(double, n *n);
   d->work = DVI_NEW(double, 4 * n);
   d->pivot = DVI_NEW(int, n);
   d->iwork = DVI_NEW(int, n);
-  if (d->lu != NULL && d->work != NULL && d->pivot != NULL && d->iwork != NULL) return DVI_OK;
+  if (d->lu != NULL && d->work != NULL && d->pivot != NULL && d->iwork != NULL &&
+      (!d->is_small || dense_allocate_small(d, (int)n)))
+    return DVI_OK;
   dense_destroy(d);
   *factor = NULL;
   return dvi__fail(DVI_NO_MEMORY, "dense LU: no memory for %zu x %zu numbers", n, n);
 }
 
-/* Fill the square and return its 1-norm. */
-static double dense_fill(dense *d, const dvi__pattern *pattern, const double *values)
+/* Fill a square, whose columns have `stride` numbers, and note the 1-norm. */
+static void dense_fill(dense *d, const dvi__pattern *pattern, const double *values, double *square,
+                       size_t stride)
 {
-  const size_t n = (size_t)pattern->rows;
   double norm = 0;
-  memset(d->lu, 0, n * n * sizeof(double));
+  memset(square, 0, (size_t)pattern->columns * stride * sizeof(double));
   for (int j = 0; j < pattern->columns; j++) {
     double column = 0;
     for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++) {
-      d->lu[(size_t)j * n + (size_t)pattern->row[e]] = values[e];
+      square[(size_t)j * stride + (size_t)pattern->row[e]] = values[e];
       column += fabs(values[e]);
     }
-    norm = fmax(norm, column);
+    norm = column > norm ? column : norm;
   }
-  return norm;
+  d->norm = norm;
+}
+
+/* Estimate the reciprocal condition of the factor in d->lu. */
+static double dense_estimate(const dense *d, int n)
+{
+  double reciprocal_condition = 0;
+  int status = 0;
+  dgecon_("1", &n, d->lu, &n, &d->norm, &reciprocal_condition, d->work, d->iwork, &status, 1);
+  return status == 0 ? reciprocal_condition : 0;
+}
+
+/* Estimate that of a small matrix by LAPACK, which has both factors in one square. */
+static double dense_estimate_small(const dense *d)
+{
+  const int n = d->small.n, stride = d->small.stride;
+  for (int j = 0; j < n; j++)
+    for (int i = 0; i < n; i++)
+      d->lu[j * n + i] = i == j ? d->small.diagonal[j]
+                                : (i < j ? d->small.upper : d->small.lower)[j * stride + i];
+  return dense_estimate(d, n);
+}
+
+static dvi_status dense_test_condition(int n, double reciprocal_condition)
+{
+  if (reciprocal_condition >= DVI__LEAST_RCOND) return DVI_OK;
+  return dvi__fail(
+      DVI_SINGULAR,
+      "dense LU: the %d x %d matrix is singular to working precision (reciprocal condition %.1e)",
+      n, n, reciprocal_condition);
+}
+
+static dvi_status dense_refactor_small(dense *d, const dvi__pattern *pattern, const double *values)
+{
+  dense_fill(d, pattern, values, d->small.upper, (size_t)d->small.stride);
+  const double pivots = dvi__small_lu_factor(&d->small);
+  if (pivots >= safe_pivots) return DVI_OK;
+  return dense_test_condition(pattern->rows, pivots > 0 ? dense_estimate_small(d) : 0);
 }
 
 static dvi_status dense_refactor(void *factor, const dvi__pattern *pattern, const double *values)
@@ -74,17 +136,11 @@ static dvi_status dense_refactor(void *factor, const dvi__pattern *pattern, cons
   dense *d = factor;
   const int n = pattern->rows;
   int status = 0;
-  double reciprocal_condition = 0;
-  const double norm = dense_fill(d, pattern, values);
+  if (d->is_small) return dense_refactor_small(d, pattern, values);
+  dense_fill(d, pattern, values, d->lu, (size_t)n);
   dgetrf_(&n, &n, d->lu, &n, d->pivot, &status);
-  if (status == 0)
-    dgecon_("1", &n, d->lu, &n, &norm, &reciprocal_condition, d->work, d->iwork, &status, 1);
-  d->reciprocal_condition = reciprocal_condition;
-  if (status == 0 && reciprocal_condition >= DVI__LEAST_RCOND) return DVI_OK;
-  return dvi__fail(
-      DVI_SINGULAR,
-      "dense LU: the %d x %d matrix is singular to working precision (reciprocal condition %.1e)",
-      n, n, reciprocal_condition);
+  d->reciprocal_condition = status == 0 ? dense_estimate(d, n) : 0;
+  return dense_test_condition(n, d->reciprocal_condition);
 }
 
 static dvi_status dense_solve(void *factor, const dvi__pattern *pattern, double *b)
@@ -92,22 +148,29 @@ static dvi_status dense_solve(void *factor, const dvi__pattern *pattern, double 
   const dense *d = factor;
   const int n = pattern->rows, one = 1;
   int status;
-  dgetrs_("N", &n, &one, d->lu, &n, d->pivot, b, &n, &status, 1);
+  if (d->is_small)
+    dvi__small_lu_solve(&d->small, b);
+  else
+    dgetrs_("N", &n, &one, d->lu, &n, d->pivot, b, &n, &status, 1);
   return DVI_OK;
 }
 
 static double dense_condition(const void *factor)
 {
-  return ((const dense *)factor)->reciprocal_condition;
+  const dense *d = factor;
+  return d->is_small ? dense_estimate_small(d) : d->reciprocal_condition;
 }
 
+/* LAPACK counts rows from 1. */
 static int dense_sign(const void *factor, const dvi__pattern *pattern)
 {
   const dense *d = factor;
   const int n = pattern->rows;
   int negative = 0;
   for (int i = 0; i < n; i++)
-    negative ^= (d->pivot[i] != i + 1) ^ (d->lu[(size_t)i * (size_t)n + (size_t)i] < 0);
+    negative ^= d->is_small
+                    ? (d->pivot[i] != i) ^ (d->small.diagonal[i] < 0)
+                    : (d->pivot[i] != i + 1) ^ (d->lu[(size_t)i * (size_t)n + (size_t)i] < 0);
   return negative ? -1 : 1;
 }
 

@@ -1,6 +1,7 @@
 #include "num/linear.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <string.h>
 
 #include "core/memory.h"
@@ -195,24 +196,37 @@ static dvi_status linear_prepare(dvi__linear *linear)
 
 /* ---- factor ---- */
 
-/* Give the power of two that brings each largest magnitude into [1,2), 1 where there is none. */
-static void invert_scales(int n, double *scale)
+/* Give the power of two that brings the magnitude into [1,2), as far as there is one, 1 for 0. The
+ * exponents of normal numbers and of their inverses add up to EXPONENTS in their bits. */
+static double invert_scale(double magnitude)
 {
-  for (int i = 0; i < n; i++)
-    scale[i] = scale[i] > 0 ? ldexp(1.0, ilogb(scale[i]) < -1023 ? 1023 : -ilogb(scale[i])) : 1.0;
+  const uint64_t EXPONENTS = 2046, mantissa = 52;
+  uint64_t bits;
+  memcpy(&bits, &magnitude, sizeof bits);
+  bits >>= mantissa;
+  if (bits == 0 || bits >= EXPONENTS)
+    return magnitude > 0 ? ldexp(1.0, ilogb(magnitude) < -1023 ? 1023 : -ilogb(magnitude)) : 1.0;
+  bits = (EXPONENTS - bits) << mantissa;
+  memcpy(&magnitude, &bits, sizeof bits);
+  return magnitude;
 }
 
-static double larger_of_two(double a, double b)
+static void invert_scales(int n, double *scale)
+{
+  for (int i = 0; i < n; i++) scale[i] = invert_scale(scale[i]);
+}
+
+static inline double larger_of_two(double a, double b)
 {
   return a > b ? a : b;
 }
 
-static double entry_magnitude(int parts, const double *entry)
+static inline double entry_magnitude(int parts, const double *entry)
 {
   return parts == 1 ? fabs(entry[0]) : larger_of_two(fabs(entry[0]), fabs(entry[1]));
 }
 
-static void scale_entry(int parts, double scale, double *entry)
+static inline void scale_entry(int parts, double scale, double *entry)
 {
   entry[0] *= scale;
   if (parts == 2) entry[1] *= scale;
@@ -220,10 +234,11 @@ static void scale_entry(int parts, double scale, double *entry)
 
 /* Rows of a stage system differ by the ratio of the masses, columns by the units of coordinates and
  * momenta. Neither affects the condition of the problem. Powers of two round nothing. */
-static void linear_equilibrate(dvi__linear *linear, const double *values)
+static inline void linear_equilibrate(const dvi__linear *linear, const int parts,
+                                      const double *values)
 {
   const dvi__pattern *pattern = linear->form.pattern;
-  const int n = pattern->columns, parts = linear->parts, *row = pattern->row;
+  const int n = pattern->columns, *row = pattern->row;
   double *rows = linear->row_scale, *columns = linear->column_scale, *scaled = linear->scaled;
   memset(rows, 0, (size_t)n * sizeof(double));
   for (ptrdiff_t e = 0; e < pattern->start[n]; e++)
@@ -231,16 +246,15 @@ static void linear_equilibrate(dvi__linear *linear, const double *values)
   invert_scales(n, rows);
   memcpy(scaled, values, (size_t)parts * (size_t)pattern->start[n] * sizeof(double));
   for (int j = 0; j < n; j++) {
-    columns[j] = 0;
+    double largest = 0;
     for (ptrdiff_t e = pattern->start[j]; e < pattern->start[j + 1]; e++) {
       scale_entry(parts, rows[row[e]], scaled + parts * e);
-      columns[j] = larger_of_two(columns[j], entry_magnitude(parts, scaled + parts * e));
+      largest = larger_of_two(largest, entry_magnitude(parts, scaled + parts * e));
     }
-  }
-  invert_scales(n, columns);
-  for (int j = 0; j < n; j++)
+    columns[j] = invert_scale(largest);
     for (ptrdiff_t e = pattern->start[j]; e < pattern->start[j + 1]; e++)
       scale_entry(parts, columns[j], scaled + parts * e);
+  }
 }
 
 static dvi_status linear_check_finite(const dvi__linear *linear, const double *values)
@@ -260,7 +274,10 @@ dvi_status dvi__linear_factor(dvi__linear *linear, const double *values)
   if (linear->counters != NULL && is_matrix) linear->counters->factorizations++;
   const double *factored = values;
   if (has_scales(linear)) {
-    linear_equilibrate(linear, values);
+    if (linear->parts == 1)
+      linear_equilibrate(linear, 1, values);
+    else
+      linear_equilibrate(linear, 2, values);
     factored = linear->scaled;
   }
   return linear->kind->refactor(linear->factor, linear->form.pattern, factored);

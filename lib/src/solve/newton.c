@@ -10,8 +10,10 @@
 enum { MOST_ITERATIONS = 40 };
 
 /* Ratio of two corrections beyond which a new Jacobian costs less than the iterations that it
- * saves. */
+ * saves. Where the end of the iteration is foreseen, a new Jacobian of few unknowns costs about as
+ * much as MOST_KEPT iterations, less the last one with it. */
 static const double keep_below = 0.05;
+enum { MOST_KEPT = 3 };
 
 /* Newton's corrections shrink fast until rounding noise of the residual, amplified by a stiff
  * Jacobian, dominates. One correction that doubles is a bad sign, and two end the iteration. */
@@ -39,11 +41,14 @@ int dvi__misleading(const dvi__history *history, double whole)
          (history->before > 0.5 * whole && history->last > 0.25 * history->before);
 }
 
-/* Give the largest change of an unknown relative to that unknown itself. */
-static double relative_change(int count, const double *correction, const double *x)
+/* Give the largest change of an unknown relative to that unknown itself, or to its group where the
+ * end is foreseen. */
+static double relative_change(const dvi__solver *s, const double *x)
 {
+  const double *correction = s->residual;
   double largest = 0;
-  for (int i = 0; i < count; i++)
+  if (s->equations.ahead) return dvi__solver_worst_ratio(s, 0, correction, x);
+  for (int i = 0; i < s->equations.unknowns; i++)
     if (fabs(correction[i]) > largest * fabs(x[i]) && x[i] != 0)
       largest = fabs(correction[i] / x[i]);
   return largest;
@@ -54,26 +59,64 @@ static double relative_change(int count, const double *correction, const double 
  * better. */
 static int small_ones_settled(dvi__solver *s, const double *x, double *last)
 {
-  const double change = relative_change(s->equations.unknowns, s->residual, x);
+  const double change = relative_change(s, x);
   const int settled = change <= 64 * DBL_EPSILON || change >= 0.5 * *last;
   *last = change;
   return settled;
 }
 
-/* Tell whether a part of the correction no longer counts. Where errors are squared, a correction's
- * ratio to the last one is squared, too, and is the same for all unknowns, small ones as well. A
+/* Give the next correction's own part that is to be expected with this factor, as a part of this
+ * correction. Below the noise a correction is more than its own part, and the contraction is that
+ * seen above it. Where errors are squared, a correction's ratio to the last one is squared, too. A
  * kept Jacobian only keeps the ratio. */
-static int is_unseen(const dvi__solver *s, double part, double correction, double whole,
-                     const double *x)
+static double expected_part(const dvi__history *history, double correction, int kept)
 {
-  return s->equations.ahead && dvi__unseen(part * correction, whole) &&
-         part * relative_change(s->equations.unknowns, s->residual, x) <= 64 * DBL_EPSILON;
+  if (history->contraction == 0 || history->own > correction) {
+    const double ratio = dvi__ratio(correction, history);
+    return kept ? ratio : ratio * ratio;
+  }
+  return history->contraction * (kept ? 1 : history->contraction) * (history->own / correction);
+}
+
+/* What the end of an iteration is foreseen from, where that is possible. */
+typedef struct outlook {
+  double next;   /* the next correction's own part, as a part of this one */
+  double unseen; /* the part of this correction that no longer counts */
+  double reach;  /* the first correction by the factor in use, as a part of the unknowns */
+} outlook;
+
+/* Look ahead. The part that no longer counts is that of the largest unknowns, and of the group that
+ * changes most. An unknown alone may be small by chance, and only keeps its digits. The ratio of
+ * two corrections by one factor is as small as the change of the Jacobian over the first one, which
+ * changes little over the step as a whole. The root of `reach` bounds it with a wide margin where
+ * roundings hide it. */
+static void look_ahead(const dvi__solver *s, const dvi__history *history, double correction,
+                       double whole, int kept, const double *x, outlook *now)
+{
+  const double part = s->equations.ahead ? dvi__solver_worst_ratio(s, 0, s->residual, x) : HUGE_VAL;
+  if (!kept) now->reach = part;
+  now->next = fmin(expected_part(history, correction, kept), sqrt(now->reach));
+  now->unseen = s->equations.group > 1
+                    ? dvi__unseen_part(part)
+                    : fmin(64 * DBL_EPSILON / part, dvi__unseen_part(correction / whole));
+}
+
+/* Tell whether the factor in use serves the next iteration, too. */
+static int keeps_factor(const dvi__solver *s, const dvi__history *history, const outlook *now)
+{
+  double part = now->next;
+  if (s->equations.renewed) return part * part <= now->unseen;
+  if (!s->equations.ahead || s->equations.dear || history->before == 0)
+    return history->before == 0 || history->last < keep_below * history->before;
+  for (int i = 1; i < MOST_KEPT && part > now->unseen; i++) part *= now->next;
+  return part <= now->unseen;
 }
 
 dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__solve_report *report)
 {
   const dvi__criteria criteria = newton_criteria(s);
   dvi__history history = {0};
+  outlook now = {.reach = HUGE_VAL};
   double whole, last_relative = HUGE_VAL;
   int fresh = 0, growing = 0, converged = 0;
   report->idle = 0;
@@ -88,10 +131,8 @@ dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__so
     dvi__solver_note(s, x, report);
     const dvi__progress progress = dvi__test_correction(report->correction, &history, &criteria,
                                                         whole, size);
-    const double ratio = dvi__ratio(report->correction, &history),
-                 next = fresh ? ratio : ratio * ratio;
-    if (progress != DVI__STALLED && !converged && is_unseen(s, next, report->correction, whole, x))
-      return DVI_OK;
+    look_ahead(s, &history, report->correction, whole, fresh, x, &now);
+    if (progress != DVI__STALLED && !converged && now.next <= now.unseen) return DVI_OK;
     const int no_better = report->correction >= criteria.stagnant * history.before,
               is_idle = no_better && history.before > 0 &&
                         report->correction <= small_correction * whole;
@@ -104,10 +145,10 @@ dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__so
     if (converged && small_ones_settled(s, x, &last_relative)) return DVI_OK;
     growing = progress == DVI__STALLED ? growing + 1 : 0;
     if (growing == 2 || report->correction > 1e300) break;
-    if (wary && report->iterations == 2 && !converged && dvi__misleading(&history, whole)) break;
-    fresh = converged || is_unseen(s, next * next, report->correction, whole, x) ||
-            (!s->equations.renewed &&
-             (history.before == 0 || history.last < keep_below * history.before));
+    if (wary && report->iterations == 2 && !converged &&
+        report->correction > criteria.noise * (whole + size) && dvi__misleading(&history, whole))
+      break;
+    fresh = converged || keeps_factor(s, &history, &now);
   }
   if (converged) return DVI_OK;
   return dvi__fail(DVI_NOT_CONVERGED, "Newton's method does not settle (change %.1e after %.1e)",

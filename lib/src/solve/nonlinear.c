@@ -100,10 +100,8 @@ double dvi__solver_least_part(const dvi__solver *solver)
   return fmax(rounding, sqrt(solver->equations.noise));
 }
 
-/* Give the largest ratio of two vectors over the groups. Groups of `to` count with at least
- * `least`. */
-static double worst_ratio(const dvi__solver *solver, double least, const double *of,
-                          const double *to)
+double dvi__solver_worst_ratio(const dvi__solver *solver, double least, const double *of,
+                               const double *to)
 {
   const int unknowns = solver->equations.unknowns, group = solver->equations.group;
   double worst = 0;
@@ -126,8 +124,8 @@ void dvi__solver_note(const dvi__solver *solver, const double *x, dvi__solve_rep
   const double least = dvi__solver_least_part(solver) *
                        dvi__largest((size_t)solver->equations.unknowns, x);
   report->contraction = report->correction / report->largest_first;
-  report->first = worst_ratio(solver, least, solver->before, x);
-  report->bend = worst_ratio(solver, least, solver->residual, solver->before);
+  report->first = dvi__solver_worst_ratio(solver, least, solver->before, x);
+  report->bend = dvi__solver_worst_ratio(solver, least, solver->residual, solver->before);
 }
 
 /* Each term of a row is itself the result of a few products and sums. */

@@ -70,9 +70,9 @@ double dvi__ratio(double correction, const dvi__history *history)
   return correction < history->before ? correction / history->before : 1;
 }
 
-int dvi__unseen(double expected, double unknown)
+double dvi__unseen_part(double change)
 {
-  return expected <= settled * unknown;
+  return settled / change;
 }
 
 /* ---- many problems ---- */

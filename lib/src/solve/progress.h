@@ -41,8 +41,9 @@ dvi__progress dvi__test_correction(double correction, dvi__history *history,
  * grows. */
 double dvi__ratio(double correction, const dvi__history *history);
 
-/* Tell whether a correction of the size `expected` would be below the roundoff floor. */
-int dvi__unseen(double expected, double unknown);
+/* Give the part of a correction that would be below the roundoff floor. `change` is the correction
+ * as a part of the unknowns. */
+double dvi__unseen_part(double change);
 
 /* Histories of many problems, [count] each, without `before`, and the problems' sizes. */
 typedef struct dvi__histories {

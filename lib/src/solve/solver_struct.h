@@ -40,6 +40,11 @@ dvi_status dvi__solver_at_floor(dvi__solver *solver, const double *x, int settle
  * groups may be noise. */
 double dvi__solver_least_part(const dvi__solver *solver);
 
+/* Give the largest ratio of two vectors over the groups of unknowns. Groups of `to` count with at
+ * least `least`. */
+double dvi__solver_worst_ratio(const dvi__solver *solver, double least, const double *of,
+                               const double *to);
+
 /* Report on the first two corrections of an iteration, each after it was made. */
 void dvi__solver_note(const dvi__solver *solver, const double *x, dvi__solve_report *report);
 

@@ -269,6 +269,25 @@ START_TEST(a_callback_that_goes_on_asking_for_smaller_steps_is_heard)
 }
 END_TEST
 
+/* One Jacobian, and the correction that shows how the next one would shrink. The guess with its
+ * expected error makes the first correction so small. */
+START_TEST(a_smooth_step_takes_a_jacobian_and_two_residuals)
+{
+  enum { STEPS = 400 };
+  problem *model = create_problem("massless-particle", "gauge=singular");
+  dvi_integrator *integrator = start_integrator(model, "vprk:nodes=4");
+  dvi_counters first, n;
+  advance(integrator, 0.25, 1);
+  dvi_integrator_counters(integrator, &first);
+  advance(integrator, 0.25, STEPS);
+  dvi_integrator_counters(integrator, &n);
+  ck_assert_int_le(n.jacobians - first.jacobians, STEPS + STEPS / 16);
+  ck_assert_int_le(n.residuals - first.residuals, 2 * STEPS + STEPS / 2);
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&model);
+}
+END_TEST
+
 START_TEST(lobatto_wants_two_nodes)
 {
   problem *model = create_problem("lotka-volterra", NULL);
@@ -288,6 +307,7 @@ SUITE(vprk)
   tcase_add_loop_test(tests, tableaux_and_projections_have_the_order_that_they_claim, 0, KINDS);
   tcase_add_test(tests, projected_steps_end_on_the_constraint_and_others_leave_it);
   tcase_add_test(tests, the_multiplier_is_the_kick);
+  tcase_add_test(tests, a_smooth_step_takes_a_jacobian_and_two_residuals);
   tcase_add_loop_test(tests, energy_stays_bounded_and_momenta_are_conserved, 0, RUNS);
   tcase_add_test(tests, a_banana_stays_a_banana);
   tcase_add_test(tests, loop_integrals_are_conserved_by_symplectic_maps_alone);

@@ -59,8 +59,9 @@ dvi_status dvi__partitioned_step(dvi__stepper *self, dvi__state *state, double h
   const partitioned *own = self->own;
   const dvi__one_step *one = &own->one;
   DVI_TRY(dvi__one_step_solve(self, state, h));
-  DVI_TRY(dvi__partitioned_residual(one->of, one->x, one->work));
-  dvi__partitioned_ends(one->of, one->dq, one->dp);
+  if (own->projection == DVI__NO_PROJECTION)
+    DVI_TRY(dvi__partitioned_residual(one->of, one->x, one->work));
+  dvi__partitioned_ends(one->of, one->x, one->dq, one->dp);
   keep_multiplier(self);
   DVI_TRY(dvi__one_step_move(self, state, h, one->x));
   if (own->projection != DVI__NO_PROJECTION) return dvi__one_step_constrain(self, state);

@@ -46,7 +46,8 @@ static dvi_status prolongation_collocation_place(dvi__stepper *self, const dvi__
   return DVI_OK;
 }
 
-DVI__STEP_KIND(prolongation, prolongation_collocation_place, prolongation_collocation_explain);
+DVI__STEP_KIND(prolongation, prolongation_collocation_place, prolongation_collocation_explain,
+               .inexact = 1);
 
 static dvi_status prolongation_collocation_create(dvi__stepper *self)
 {

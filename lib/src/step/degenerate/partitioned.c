@@ -242,8 +242,9 @@ dvi_status dvi__partitioned_residual(dvi__partitioned *p, const double *x, doubl
   return DVI_OK;
 }
 
-void dvi__partitioned_ends(const dvi__partitioned *p, double *dq, double *dp)
+void dvi__partitioned_ends(dvi__partitioned *p, const double *x, double *dq, double *dp)
 {
+  partitioned_points(p, x);
   memcpy(dq, p->dq, (size_t)p->n * sizeof *dq);
   memcpy(dp, p->dp, (size_t)p->n * sizeof *dp);
 }

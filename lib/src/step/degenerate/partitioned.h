@@ -55,8 +55,8 @@ dvi_status dvi__partitioned_jacobian(dvi__partitioned *partitioned, const double
  * L_vv/h. */
 dvi_status dvi__partitioned_scale(dvi__partitioned *partitioned, double *scale);
 
-/* Write the increments of q and p, [n] each, of the last residual. */
-void dvi__partitioned_ends(const dvi__partitioned *partitioned, double *dq, double *dp);
+/* Write the increments of q at x, and those of p of the last residual, [n] each. */
+void dvi__partitioned_ends(dvi__partitioned *partitioned, const double *x, double *dq, double *dp);
 
 /* Write x for increments along v [n]. dvi__partitioned_continue continues the stages' velocities of
  * the last step, with ratio = h_next / h_last. The multiplier starts from 0. */

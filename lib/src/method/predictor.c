@@ -1,0 +1,74 @@
+#include "method/predictor.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Differences that are kept. More of them would amplify roundings. */
+enum { DIFFERENCES = 3 };
+
+/* The memory holds the length of the steps, the number of known differences, that of those in use,
+ * and the differences of orders 0, 1 and 2 [unknowns]. */
+enum { LENGTH, KNOWN, USED, FIRST };
+
+size_t dvi__predictor_memory(size_t unknowns)
+{
+  return FIRST + DIFFERENCES * unknowns;
+}
+
+/* Give a number of differences. That of a damaged checkpoint may be anything. */
+static int count_of(const double *memory, double h, int place)
+{
+  const double count = memory[place];
+  return memory[LENGTH] == h && count >= 0 && count <= DIFFERENCES ? (int)count : 0;
+}
+
+void dvi__predictor_correct(dvi__predictor *p, const double *memory, double h, double *x)
+{
+  const int used = count_of(memory, h, USED);
+  memcpy(p->plain, x, p->unknowns * sizeof *x);
+  p->h = h;
+  for (int k = 0; k < used; k++) {
+    const double *difference = memory + FIRST + (size_t)k * p->unknowns;
+    for (size_t i = 0; i < p->unknowns; i++) x[i] += difference[i];
+  }
+}
+
+/* Replace the differences by those of the next error. Gives what each number of differences would
+ * have left of it. */
+static void renew_differences(const dvi__predictor *p, const double *x, double *difference,
+                              double left[DIFFERENCES + 1])
+{
+  double most[DIFFERENCES + 1] = {0};
+  for (size_t i = 0; i < p->unknowns; i++) {
+    double next = x[i] - p->plain[i];
+    for (int k = 0; k < DIFFERENCES; k++) {
+      double *kept = difference + (size_t)k * p->unknowns + i;
+      const double change = next - *kept;
+      most[k] = fabs(next) > most[k] ? fabs(next) : most[k];
+      *kept = next;
+      next = change;
+    }
+    most[DIFFERENCES] = fabs(next) > most[DIFFERENCES] ? fabs(next) : most[DIFFERENCES];
+  }
+  memcpy(left, most, sizeof most);
+}
+
+void dvi__predictor_learn(dvi__predictor *p, double *memory, double h, const double *x)
+{
+  double left[DIFFERENCES + 1];
+  const int known = count_of(memory, h, KNOWN);
+  int used = 0;
+  memory[LENGTH] = memory[KNOWN] = memory[USED] = 0;
+  if (p->h != h) return;
+  renew_differences(p, x, memory + FIRST, left);
+  for (int k = 1; k <= known; k++)
+    if (left[k] < left[used]) used = k;
+  memory[LENGTH] = h;
+  memory[KNOWN] = known < DIFFERENCES ? known + 1 : DIFFERENCES;
+  memory[USED] = used;
+}
+
+void dvi__predictor_leave(dvi__predictor *p)
+{
+  p->h = 0;
+}

@@ -1,0 +1,152 @@
+#include "num/simd/small_lu.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "num/simd/wide.h"
+#include "num/simd/width.h"
+
+enum { BLOCK = DVI__SMALL_LU_BLOCK, MOST = DVI__SMALL_LU_MOST };
+
+int dvi__small_lu_stride(int n)
+{
+  return (n + BLOCK - 1) / BLOCK * BLOCK;
+}
+
+typedef double block __attribute__((vector_size(BLOCK * sizeof(double))));
+
+/* Subtract factor x from y in the blocks from `first` to `end`. */
+INLINE void subtract(int first, int end, double factor, const double *x, double *y)
+{
+  for (int i = first; i < end; i += BLOCK) {
+    block a, b;
+    memcpy(&a, x + i, sizeof a);
+    memcpy(&b, y + i, sizeof b);
+    b -= factor * a;
+    memcpy(y + i, &b, sizeof b);
+  }
+}
+
+/* Subtract four columns, one after the other, times their factors. The first one is `column`, and
+ * the next ones are `step` numbers apart. */
+INLINE void subtract_four(int first, int end, int step, const double *column, const block *factor,
+                          double *y)
+{
+  for (int i = first; i < end; i += BLOCK) {
+    block sum, x[BLOCK];
+    memcpy(&sum, y + i, sizeof sum);
+    for (int k = 0; k < BLOCK; k++) memcpy(x + k, column + k * step + i, sizeof *x);
+    for (int k = 0; k < BLOCK; k++) sum -= (*factor)[k] * x[k];
+    memcpy(y + i, &sum, sizeof sum);
+  }
+}
+
+/* Solve with L. */
+INLINE void solve_lower(const dvi__small_lu *lu, double *x)
+{
+  const int stride = lu->stride;
+  for (int at = 0; at < stride; at += BLOCK) {
+    const double *L = lu->lower + at * stride + at;
+    block y;
+    memcpy(&y, x + at, sizeof y);
+    y[1] -= L[1] * y[0];
+    y[2] = (y[2] - L[2] * y[0]) - L[stride + 2] * y[1];
+    y[3] = ((y[3] - L[3] * y[0]) - L[stride + 3] * y[1]) - L[2 * stride + 3] * y[2];
+    memcpy(x + at, &y, sizeof y);
+    subtract_four(at + BLOCK, stride, stride, lu->lower + at * stride, &y, x);
+  }
+}
+
+/* Solve with U. */
+INLINE void solve_upper(const dvi__small_lu *lu, double *x)
+{
+  const int stride = lu->stride;
+  for (int at = stride - BLOCK; at >= 0; at -= BLOCK) {
+    const double *U = lu->upper + at * stride + at, *diagonal = lu->diagonal + at;
+    block y, reversed;
+    memcpy(&y, x + at, sizeof y);
+    y[3] /= diagonal[3];
+    y[2] = (y[2] - U[3 * stride + 2] * y[3]) / diagonal[2];
+    y[1] = ((y[1] - U[3 * stride + 1] * y[3]) - U[2 * stride + 1] * y[2]) / diagonal[1];
+    y[0] = (((y[0] - U[3 * stride] * y[3]) - U[2 * stride] * y[2]) - U[stride] * y[1]) /
+           diagonal[0];
+    memcpy(x + at, &y, sizeof y);
+    for (int k = 0; k < BLOCK; k++) reversed[k] = y[BLOCK - 1 - k];
+    subtract_four(0, at, -stride, lu->upper + (at + BLOCK - 1) * stride, &reversed, x);
+  }
+}
+
+static int row_of_pivot(int n, int k, const double *column)
+{
+  int at = k;
+  for (int i = k + 1; i < n; i++)
+    if (fabs(column[i]) > fabs(column[at])) at = i;
+  return at;
+}
+
+/* Exchange two rows of the columns that are not done, and of L. */
+static void exchange_rows(const dvi__small_lu *lu, int k, int with)
+{
+  for (int j = 0; j < lu->n; j++) {
+    double *column = (j < k ? lu->lower : lu->upper) + j * lu->stride;
+    const double kept = column[k];
+    column[k] = column[with];
+    column[with] = kept;
+  }
+}
+
+/* Make column k one of L and one of U, and subtract it from the columns behind. Gives the pivot. */
+INLINE double factor_column(const dvi__small_lu *lu, int k)
+{
+  const int n = lu->n, stride = lu->stride, first = k / BLOCK * BLOCK;
+  double *column = lu->upper + k * stride, *lower = lu->lower + k * stride;
+  lu->pivot[k] = row_of_pivot(n, k, column);
+  if (lu->pivot[k] != k) exchange_rows(lu, k, lu->pivot[k]);
+  const double pivot = column[k], inverse = 1 / pivot;
+  lu->diagonal[k] = pivot;
+  for (int i = first; i < stride; i++) lower[i] = column[i] * inverse;
+  for (int i = first; i <= k; i++) lower[i] = 0;
+  for (int i = k; i < stride; i++) column[i] = 0;
+  for (int j = k + 1; j < n; j++)
+    subtract(first, stride, lu->upper[j * stride + k], lower, lu->upper + j * stride);
+  return pivot;
+}
+
+WIDE static double small_lu_factor(const dvi__small_lu *lu)
+{
+  double least = HUGE_VAL, most = 0;
+  for (int k = 0; k < lu->n; k++) {
+    const double size = fabs(factor_column(lu, k));
+    if (!(size > 0)) return 0;
+    least = size < least ? size : least;
+    most = size > most ? size : most;
+  }
+  for (int k = lu->n; k < lu->stride; k++) lu->diagonal[k] = 1;
+  return least / most;
+}
+
+double dvi__small_lu_factor(const dvi__small_lu *lu)
+{
+  return small_lu_factor(lu);
+}
+
+WIDE static void small_lu_solve(const dvi__small_lu *lu, double *b)
+{
+  const int n = lu->n, stride = lu->stride;
+  double x[MOST];
+  memcpy(x, b, (size_t)n * sizeof *b);
+  memset(x + n, 0, (size_t)(stride - n) * sizeof *b);
+  for (int k = 0; k < n; k++) {
+    const double kept = x[lu->pivot[k]];
+    x[lu->pivot[k]] = x[k];
+    x[k] = kept;
+  }
+  solve_lower(lu, x);
+  solve_upper(lu, x);
+  memcpy(b, x, (size_t)n * sizeof *b);
+}
+
+void dvi__small_lu_solve(const dvi__small_lu *lu, double *b)
+{
+  small_lu_solve(lu, b);
+}
