@@ -223,7 +223,7 @@ START_TEST(a_leap_has_the_bits_of_plain_loops)
                                   .force = forces,
                                   .from = phase_of(in_place ? &fast : &from),
                                   .to = phase_of(&fast),
-                                  .far = variant % 2};
+                                  .far = (dvi__far)(variant % 3)};
     dvi__lanes_kick_drift(&kick_drift);
     kick_drift.from = phase_of(in_place ? &plain : &from);
     kick_drift.to = phase_of(&plain);
@@ -244,6 +244,39 @@ START_TEST(a_kick_has_the_bits_of_plain_loops)
   for (int i = 0; i < count; i++)
     dvi__add_compensated(&plain.p[i], &plain.p_compensation[i], -0.3 * forces[i]);
   ck_assert_mem_eq(&fast, &plain, sizeof fast);
+}
+END_TEST
+
+/* Arrays at odd places, too, where pairs of numbers straddle lines. */
+START_TEST(a_last_kick_has_the_bits_of_plain_loops)
+{
+  double forces[LONGEST], forces_to[LONGEST + 1] = {0};
+  const int count = _i % (LONGEST + 1);
+  dvi__lanes_choose(_i / (LONGEST + 1));
+  fill(LONGEST, forces, 5);
+  for (int past = 0; past < 3; past++) {
+    coordinates from = made_coordinates(), fast = from, plain = from;
+    dvi__last_kick last = {.count = (size_t)count,
+                           .kick = -0.3,
+                           .force = forces,
+                           .from = phase_of(past ? &from : &fast),
+                           .to = phase_of(&fast),
+                           .force_to = forces_to + past / 2,
+                           .past = past};
+    ck_assert_int_eq(dvi__lanes_last_kick(&last), 1);
+    dvi__lanes_await_stores();
+    for (int i = 0; i < count; i++)
+      dvi__add_compensated(&plain.p[i], &plain.p_compensation[i], -0.3 * forces[i]);
+    ck_assert_mem_eq(&fast, &plain, sizeof fast);
+    ck_assert(past == 0 || memcmp(last.force_to, forces, (size_t)count * sizeof(double)) == 0);
+    ck_assert(forces_to[LONGEST] == 0 || past == 2);
+    if (count == 0) continue;
+    from.q[count - 1] = fast.q[count - 1] = HUGE_VAL;
+    ck_assert_int_eq(dvi__lanes_last_kick(&last), 0);
+    from = fast = made_coordinates();
+    from.p[count / 2] = fast.p[count / 2] = (double)NAN;
+    ck_assert_int_eq(dvi__lanes_last_kick(&last), 0);
+  }
 }
 END_TEST
 
@@ -321,6 +354,8 @@ SUITE(lanes)
   tcase_add_loop_test(tests, a_leap_has_the_bits_of_plain_loops, 0,
                       dvi__lanes_levels() * (LONGEST + 1));
   tcase_add_loop_test(tests, a_kick_has_the_bits_of_plain_loops, 0,
+                      dvi__lanes_levels() * (LONGEST + 1));
+  tcase_add_loop_test(tests, a_last_kick_has_the_bits_of_plain_loops, 0,
                       dvi__lanes_levels() * (LONGEST + 1));
   tcase_add_loop_test(tests, one_number_that_is_not_finite_is_seen_anywhere, 0,
                       dvi__lanes_levels());

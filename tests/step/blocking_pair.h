@@ -154,10 +154,12 @@ static inline void destroy_pair(pair *p)
 /* All that the next step depends on. */
 static inline void check_same(const dvi_integrator *a, const dvi_integrator *b, const char *when)
 {
-  const size_t n = (size_t)a->system->n, state = 4 * n * sizeof(double),
+  const size_t n = (size_t)a->system->n, half = 2 * n * sizeof(double),
                memory = a->stepper.memory_count * sizeof(double);
-  ck_assert_msg(memcmp(a->now.q, b->now.q, state) == 0, "%s: the state, n = %zu, %s", when, n,
+  ck_assert_msg(memcmp(a->now.q, b->now.q, half) == 0, "%s: the state, n = %zu, %s", when, n,
                 a->stepper.specification);
+  ck_assert_msg(memcmp(a->now.q_compensation, b->now.q_compensation, half) == 0,
+                "%s: the compensations, n = %zu, %s", when, n, a->stepper.specification);
   ck_assert_msg(memcmp(a->stepper.memory, b->stepper.memory, memory) == 0,
                 "%s: the memory, n = %zu, %s", when, n, a->stepper.specification);
   ck_assert_mem_eq(&a->now.t, &b->now.t, 2 * sizeof(double));
@@ -172,12 +174,21 @@ static inline void step_both(pair *p, double h)
 static const char *const methods[] = {"verlet:", "composition:order=4,", "composition:order=6,",
                                       "composition:order=8,"};
 static const int substeps[] = {1, 5, 9, 17};
-enum { METHODS = 4 };
+enum { STEPPERS = 4, METHODS = 2 * STEPPERS };
+
+/* Each method comes twice, the second time with chains that count as long, whose operations work in
+ * windows. */
+static inline const char *method_of(int which)
+{
+  dvi__blocking_choose_long_chain(which < STEPPERS ? 0 : 1);
+  return methods[which % STEPPERS];
+}
 
 static inline void use_best_level(void)
 {
   dvi__lanes_choose(-1);
   dvi__blocking_choose_block(0);
+  dvi__blocking_choose_long_chain(0);
 }
 
 #endif

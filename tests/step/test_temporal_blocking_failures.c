@@ -37,7 +37,7 @@ START_TEST(a_failure_in_mid_wave_is_that_of_the_plain_sweep_and_leaves_no_trace)
     char words[512];
     pair p;
     dvi_counters counters;
-    make_pair(&p, 1500, 3, 2, threads, methods[_i / TROUBLES], threads, 16);
+    make_pair(&p, 1500, 3, 2, threads, method_of(_i / TROUBLES), threads, 16);
     for (int i = 0; i < 2; i++) step_both(&p, 0.1);
     make_trouble(&p, &troubles[_i % TROUBLES]);
     const dvi_status plain = dvi_integrator_step(p.plain, 0.1);
@@ -65,7 +65,7 @@ START_TEST(a_state_that_is_not_finite_is_refused_by_both)
 {
   for (int threads = 1; threads <= 2; threads++) {
     pair p;
-    make_pair(&p, 300, 1, 1, 0, methods[_i], threads, 8);
+    make_pair(&p, 300, 1, 1, 0, method_of(_i), threads, 8);
     step_both(&p, 0.1);
     ck_assert_int_eq(dvi_integrator_step(p.plain, 1e200), DVI_NOT_FINITE);
     ck_assert_int_eq(dvi_integrator_step(p.wave, 1e200), DVI_NOT_FINITE);
@@ -80,7 +80,7 @@ START_TEST(a_last_kick_that_overflows_is_refused_by_both)
 {
   for (int threads = 1; threads <= 2; threads++) {
     pair p;
-    make_pair(&p, 300, 0, 1, 0, methods[_i], threads, 8);
+    make_pair(&p, 300, 0, 1, 0, method_of(_i), threads, 8);
     step_both(&p, 0.1);
     p.lattice.bad_site = 277;
     p.lattice.bad_number = 1.7e308;
@@ -100,7 +100,7 @@ END_TEST
 START_TEST(a_step_can_be_taken_back)
 {
   pair p;
-  make_pair(&p, 600, 2, 2, 4, methods[_i], 2, 16);
+  make_pair(&p, 600, 2, 2, 4, method_of(_i), 2, 16);
   step_both(&p, 0.1);
   advance(p.wave, 0.07, 1);
   ck_assert_int_eq(dvi__integrator_undo(p.wave, DVI_CALLBACK_RETRY), DVI_CALLBACK_RETRY);
@@ -116,7 +116,7 @@ START_TEST(dense_output_is_that_of_the_plain_sweep)
   enum { LENGTH = 200 };
   double q[2][LENGTH], v[2][LENGTH];
   pair p;
-  make_pair(&p, LENGTH, 2, 1, 2, methods[_i], 2, 8);
+  make_pair(&p, LENGTH, 2, 1, 2, method_of(_i), 2, 8);
   for (int i = 0; i < 3; i++) step_both(&p, 0.1);
   ck_assert_int_eq(dvi_integrator_interpolate(p.wave, 0.25 + 0.23, q[0], v[0]), DVI_OK);
   ck_assert_int_eq(dvi_integrator_interpolate(p.plain, 0.25 + 0.23, q[1], v[1]), DVI_OK);
@@ -130,7 +130,7 @@ END_TEST
 START_TEST(a_new_start_begins_anew)
 {
   pair p;
-  make_pair(&p, 100, 1, 1, 0, methods[_i], 1, 0);
+  make_pair(&p, 100, 1, 1, 0, method_of(_i), 1, 0);
   for (int i = 0; i < 3; i++) advance(p.wave, 0.1, 1);
   start_alike(&p);
   for (int i = 0; i < 2; i++) step_both(&p, 0.1);
@@ -142,7 +142,7 @@ END_TEST
 START_TEST(a_checkpoint_continues_bit_for_bit)
 {
   pair p;
-  make_pair(&p, 777, 3, 2, 4, methods[_i], 2, 16);
+  make_pair(&p, 777, 3, 2, 4, method_of(_i), 2, 16);
   for (int i = 0; i < 3; i++) step_both(&p, 0.1);
   ck_assert_msg(dvi_integrator_save(p.wave, path_in_folder("checkpoint")) == DVI_OK, "%s",
                 dvi_last_error());
@@ -172,7 +172,7 @@ START_TEST(runs_with_events_are_those_of_the_plain_sweep)
   const dvi_run_options options = {.h = 0.1, .t_end = 7.33, .events = &event, .event_count = 1};
   dvi_run_report wave, plain;
   pair p;
-  make_pair(&p, 150, 1, 2, 0, methods[_i], 2, 8);
+  make_pair(&p, 150, 1, 2, 0, method_of(_i), 2, 8);
   ck_assert_int_eq(dvi_run(p.wave, &options, &wave), DVI_OK);
   ck_assert_int_eq(dvi_run(p.plain, &options, &plain), DVI_OK);
   ck_assert_int_gt(wave.events, 0);

@@ -313,18 +313,24 @@ double dvi_integrator_traffic(const dvi_integrator *integrator);
 /** Return the method's full specification, every key spelled out. Owned by the integrator. */
 const char *dvi_integrator_method(const dvi_integrator *integrator);
 
-/** Evaluate all invariants at the current state, as dvi_system_invariants, without an allocation.
+/** Evaluate all invariants at the current state, as dvi_system_invariants. The first call may
+ *  allocate room for a velocity at each end of the last step, which the dense output shares, and
+ *  for a symmetry. Later calls allocate nothing.
  *
- *  @param[out] value  [dvi_system_invariant_count] */
+ *  @param[out] value  [dvi_system_invariant_count]
+ *  @retval DVI_NO_MEMORY  there is no memory for these
+ *  @retval (others)       as dvi_integrator_invariant */
 dvi_status dvi_integrator_invariants(dvi_integrator *integrator, double *value);
 
-/** Evaluate invariant i alone at the current state, without an allocation. Invariant 0 is the
- *  energy. dvi_system_invariant_name returns the names.
+/** Evaluate invariant i alone at the current state. Allocations are those of
+ *  dvi_integrator_invariants. Invariant 0 is the energy. dvi_system_invariant_name returns the
+ *  names.
  *
  *  @param[out] value  one number
  *  @retval DVI_BAD_ARGUMENT  there is no such invariant, or an argument is NULL
  *  @retval DVI_BAD_STATE     before dvi_integrator_start
  *  @retval DVI_NOT_FINITE    the invariant is not finite at the state
+ *  @retval DVI_NO_MEMORY     there is no memory for a velocity or a symmetry
  *  @retval (others)          as its callback fails, or the inverse Legendre map, which the energy
  *                            needs */
 dvi_status dvi_integrator_invariant(dvi_integrator *integrator, int i, double *value);
@@ -373,12 +379,13 @@ const double *dvi_integrator_multiplier(const dvi_integrator *integrator);
  *    - O(h^4) for compositions, O(h^3) for verlet, whose step itself is no better,
  *
  *  and v is one order less accurate. After many steps the error of the state at the ends,
- *  O(h^order), is added to both.
+ *  O(h^order), is added to both. The first call may allocate room for the velocities at both ends.
  *  @param      t  a time in the last step, ends included
  *  @param[out] q  [nq], or NULL
  *  @param[out] v  [nv], or NULL
  *  @retval DVI_BAD_STATE     no step was taken yet
  *  @retval DVI_BAD_ARGUMENT  t is outside of the last step
+ *  @retval DVI_NO_MEMORY     there is no memory for the velocities
  *  @retval DVI_NOT_FINITE    functions of your own (dvi/shapes.h) cannot be evaluated there */
 dvi_status dvi_integrator_interpolate(dvi_integrator *integrator, double t, double *q, double *v);
 

@@ -87,14 +87,29 @@ static void put_method(const dvi_integrator *I, dvi__sections_writer *w)
   dvi__section_put(w, I->stepper.specification, strlen(I->stepper.specification) + 1);
 }
 
-/* Write the system's section. A fingerprint that cannot be evaluated is NaN, and not compared. */
-static void put_system(const dvi_integrator *I, dvi__sections_writer *w)
+/* Fill the system's section. A fingerprint that cannot be evaluated is NaN, and not compared. */
+static dvi_status fill_system(const dvi_integrator *I, system_section *system)
 {
   const dvi__moment now = {I->now.t, I->last_h, I->now.q, I->now.p, I->last.q, I->last.p};
-  system_section system = {.n = I->system->n, .declared = I->system->declared};
-  (void)dvi__fingerprint_take(I, &now, &system.fingerprint);
-  dvi__section_open(w, "system", SYSTEM_VERSION);
-  dvi__section_put(w, &system, sizeof system);
+  *system = (system_section){.n = I->system->n, .declared = I->system->declared};
+  const dvi_status status = dvi__fingerprint_take(I, &now, &system->fingerprint);
+  return status == DVI_NO_MEMORY ? status : DVI_OK;
+}
+
+/* Write both states. The compensations of the state before the last step serve no step to come, and
+ * may be gone. Zeros stand for them. */
+static void put_states(const dvi_integrator *I, dvi__sections_writer *w)
+{
+  static const double zeros[512] = {0};
+  const size_t half = state_size(I) / 2;
+  dvi__section_open(w, "state", SECTION_VERSION);
+  dvi__section_put(w, I->now.q, half);
+  dvi__section_put(w, I->now.q_compensation, half);
+  dvi__section_put(w, I->last.q, half);
+  for (size_t left = half, part; left > 0; left -= part) {
+    part = left < sizeof zeros ? left : sizeof zeros;
+    dvi__section_put(w, zeros, part);
+  }
 }
 
 static void put_clock(const dvi_integrator *I, dvi__sections_writer *w)
@@ -123,14 +138,15 @@ static void put_pacing(const dvi_integrator *I, dvi__sections_writer *w)
 static dvi_status checkpoint_pack(const dvi_integrator *I, dvi__sections_writer *w)
 {
   const size_t memory = I->stepper.memory_count * sizeof(double);
+  system_section system;
+  DVI_TRY(fill_system(I, &system));
   dvi__sections_start(w, 2 * state_size(I) + memory + strlen(I->stepper.specification) + 2048);
   put_method(I, w);
-  put_system(I, w);
+  dvi__section_open(w, "system", SYSTEM_VERSION);
+  dvi__section_put(w, &system, sizeof system);
   put_clock(I, w);
   put_pacing(I, w);
-  dvi__section_open(w, "state", SECTION_VERSION);
-  dvi__section_put(w, I->now.q, state_size(I));
-  dvi__section_put(w, I->last.q, state_size(I));
+  put_states(I, w);
   dvi__section_open(w, "memory", SECTION_VERSION);
   dvi__section_put(w, I->stepper.memory, memory);
   if (I->balances > 0) {
@@ -373,8 +389,10 @@ static void checkpoint_take_over(dvi_integrator *I, const checkpoint *c)
   I->now.side = 0;
   if (I->monitored != NULL) dvi__monitored_time_set_energy(I->monitored, c->pacing.energy);
   I->counters.steps = (long)clock->steps;
-  memcpy(I->now.q, c->numbers, state_size(I));
-  memcpy(I->last.q, c->numbers + 4 * (size_t)I->system->n, state_size(I));
+  const size_t half = state_size(I) / 2, numbers = 2 * (size_t)I->system->n;
+  memcpy(I->now.q, c->numbers, half);
+  memcpy(I->now.q_compensation, c->numbers + numbers, half);
+  memcpy(I->last.q, c->numbers + 2 * numbers, half);
   if (c->balances != NULL) take_balances(I, c->balances);
   memcpy(I->stepper.memory, c->memory, I->stepper.memory_count * sizeof(double));
   I->started = 1;

@@ -26,18 +26,39 @@ dvi_status dvi__integrator_equip(dvi_integrator *I)
   return dvi__evaluator_create(I->system, 1, DVI__STATES, &I->counters, &I->evaluator);
 }
 
-static dvi_status allocate_integrator(dvi_integrator *I)
+dvi_status dvi__integrator_velocities(dvi_integrator *I)
 {
   const size_t n = (size_t)I->system->n;
-  double *at = I->numbers = DVI_NEW(double, 3 * dvi__state_numbers(I) + 2 * n + I->balances);
+  if (I->v != NULL) return DVI_OK;
+  I->v = DVI_NEW(double, 2 * n);
+  if (I->v == NULL) return refuse_memory(n);
+  I->last_v = I->v + n;
+  return DVI_OK;
+}
+
+/* Lay out the present state, and the two others, which share the compensations of one. */
+static dvi_status allocate_states(dvi_integrator *I)
+{
+  const size_t n = (size_t)I->system->n, supplied = 2 * I->balances;
+  double *at = I->numbers = DVI_NEW(double, 10 * n + 3 * supplied + I->balances);
   if (I->numbers == NULL) return refuse_memory(n);
   dvi__state_lay_out(I, &I->now, &at);
   dvi__state_lay_out(I, &I->last, &at);
-  dvi__state_lay_out(I, &I->next, &at);
-  I->v = at;
-  I->last_v = at + n;
-  I->at_start = at + 2 * n;
+  I->next.q = at;
+  I->next.p = at + n;
+  at += 2 * n;
+  dvi__share_compensations(I);
+  if (I->balances > 0) I->next.supplied = at, I->next.supplied_compensation = at + I->balances;
+  I->at_start = at + supplied;
+  return DVI_OK;
+}
+
+static dvi_status allocate_integrator(dvi_integrator *I)
+{
+  DVI_TRY(allocate_states(I));
   DVI_TRY(dvi__integrator_equip(I));
+  if (I->stepper.follows || I->monitored != NULL || I->system->contact_count > 0)
+    DVI_TRY(dvi__integrator_velocities(I));
   return dvi__hits_create(I);
 }
 
@@ -197,6 +218,7 @@ void dvi_integrator_destroy(dvi_integrator **integrator)
   dvi__integrator_strip(I);
   dvi__monitored_time_destroy(&I->monitored);
   dvi__release(I->numbers);
+  dvi__release(I->v);
   dvi__release(I->shapes);
   dvi__release(I);
   *integrator = NULL;

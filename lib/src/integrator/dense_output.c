@@ -22,6 +22,7 @@ void dvi__cubic_point(int n, const dvi__cubic *c, double tau, double *q, double 
 /* Evaluate Hermite's cubic through both ends of the last step. */
 static dvi_status hermite_cubic(dvi_integrator *I, double tau, double *q, double *v)
 {
+  DVI_TRY(dvi__integrator_velocities(I));
   DVI_TRY(dvi__state_velocity(I, &I->last, I->last_v));
   DVI_TRY(dvi__state_velocity(I, &I->now, I->v));
   const dvi__cubic cubic = {I->last_h, I->last.q, I->last_v, I->now.q, I->v};

@@ -26,8 +26,9 @@ void dvi__member_load(const dvi_ensemble *e, dvi__worker *w, const dvi__block *b
   I->now.t = dvi__row(block, DVI__MEMBER_T)[k];
   I->now.t_compensation = dvi__row(block, DVI__MEMBER_T_COMPENSATION)[k];
   I->now.side = 0;
-  /* q, p and both compensations are contiguous */
-  load_rows(4 * n, dvi__row(block, DVI__MEMBER_Q) + k, members, I->now.q);
+  /* q and p are contiguous, and their compensations are, too */
+  load_rows(2 * n, dvi__row(block, DVI__MEMBER_Q) + k, members, I->now.q);
+  load_rows(2 * n, dvi__row(block, DVI__MEMBER_Q + 2 * n) + k, members, I->now.q_compensation);
   load_rows(I->stepper.memory_count, dvi__row(block, DVI__MEMBER_Q + 4 * n) + k, members,
             I->stepper.memory);
   I->last_h = dvi__driver_row(e, block, DVI__MEMBER_LAST_H)[k];
@@ -45,7 +46,8 @@ void dvi__member_store(const dvi_ensemble *e, const dvi__worker *w, const dvi__b
   const size_t n = (size_t)e->n, members = (size_t)block->count;
   dvi__row(block, DVI__MEMBER_T)[k] = I->now.t;
   dvi__row(block, DVI__MEMBER_T_COMPENSATION)[k] = I->now.t_compensation;
-  store_rows(4 * n, I->now.q, members, dvi__row(block, DVI__MEMBER_Q) + k);
+  store_rows(2 * n, I->now.q, members, dvi__row(block, DVI__MEMBER_Q) + k);
+  store_rows(2 * n, I->now.q_compensation, members, dvi__row(block, DVI__MEMBER_Q + 2 * n) + k);
   store_rows(I->stepper.memory_count, I->stepper.memory, members,
              dvi__row(block, DVI__MEMBER_Q + 4 * n) + k);
   dvi__driver_row(e, block, DVI__MEMBER_LAST_H)[k] = I->last_h;

@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "core/hash.h"
+#include "core/memory.h"
 #include "core/status.h"
 #include "integrator/integrator_struct.h"
 #include "system/evaluate/dynamics.h"
@@ -50,11 +51,11 @@ static dvi_status find_rank(const dvi_integrator *I, const dvi__moment *at)
   return of_states->side(I->evaluator, at->t, at->q, at->p, 0, &side);
 }
 
-static dvi_status fingerprint_evaluate(const dvi_integrator *I, const dvi__moment *at,
-                                       dvi__fingerprint *f)
+/* v, forces [n] are work. */
+static dvi_status fingerprint_evaluate(const dvi_integrator *I, const dvi__moment *at, double *v,
+                                       double *forces, dvi__fingerprint *f)
 {
   const int n = I->system->n;
-  double *v = I->v, *forces = I->last_v;
   const double *second = dvi__second(I->system, v, at->p);
   if (I->system->dynamics->searches_velocity)
     dvi__guess_velocity(n, at->q, at->last_q, at->last_p, at->last_h, v);
@@ -74,7 +75,13 @@ dvi_status dvi__fingerprint_take(const dvi_integrator *I, const dvi__moment *at,
 {
   const dvi__sum nothing = {.value = (double)NAN, .size = (double)NAN};
   *fingerprint = (dvi__fingerprint){0};
-  const dvi_status status = fingerprint_evaluate(I, at, fingerprint);
+  const size_t n = (size_t)I->system->n;
+  double *work = DVI_NEW(double, 2 * n);
+  const dvi_status status = work != NULL
+                                ? fingerprint_evaluate(I, at, work, work + n, fingerprint)
+                                : dvi__fail(DVI_NO_MEMORY, "checkpoint: no memory for %zu numbers",
+                                            2 * n);
+  dvi__release(work);
   if (status != DVI_OK)
     *fingerprint = (dvi__fingerprint){nothing, nothing, nothing, nothing, nothing};
   return status;

@@ -189,7 +189,16 @@ void dvi__state_copy(const dvi_integrator *I, const dvi__state *from, dvi__state
   to->t_compensation = from->t_compensation;
   to->density = from->density;
   to->side = from->side;
-  memcpy(to->q, from->q, dvi__state_numbers(I) * sizeof(double)); /* all arrays are contiguous */
+  const size_t bytes = 2 * (size_t)I->system->n * sizeof(double);
+  memcpy(to->q, from->q, bytes);
+  memcpy(to->q_compensation, from->q_compensation, bytes);
+  if (I->balances > 0) memcpy(to->supplied, from->supplied, 2 * I->balances * sizeof(double));
+}
+
+void dvi__share_compensations(dvi_integrator *I)
+{
+  I->next.q_compensation = I->last.q_compensation;
+  I->next.p_compensation = I->last.p_compensation;
 }
 
 static dvi_status check_state(const dvi_integrator *I)
@@ -210,6 +219,7 @@ static void accept_step(dvi_integrator *I, double h)
   I->last = I->now;
   I->now = I->next;
   I->next = oldest;
+  dvi__share_compensations(I);
   I->last_h_before = I->last_h;
   if (I->monitored != NULL) I->monitored->expanded = 0;
   /* Only the clock knows the length in time that a transform or the control gives to h. The
@@ -238,7 +248,9 @@ void dvi__integrator_take_back(dvi_integrator *I)
 /* `next` still holds the former `last`. */
 void dvi__integrator_smooth_back(dvi_integrator *I)
 {
-  const dvi__state oldest = I->next;
+  dvi__state oldest = I->next;
+  oldest.q_compensation = I->now.q_compensation;
+  oldest.p_compensation = I->now.p_compensation;
   I->next = I->now;
   I->now = I->last;
   I->last = oldest;
@@ -458,6 +470,7 @@ dvi_status dvi_integrator_invariants(dvi_integrator *I, double *value)
     return dvi__fail(
         DVI_BAD_STATE,
         "invariants: the integrator has no state yet; call dvi_integrator_start first");
+  DVI_TRY(dvi__integrator_velocities(I));
   DVI_TRY(dvi__state_velocity(I, &I->now, I->v));
   return dvi__invariants(I->evaluator, I->now.t, I->now.q, I->v, I->now.p, value);
 }
@@ -472,7 +485,10 @@ dvi_status dvi_integrator_invariant(dvi_integrator *I, int i, double *value)
   if (i < 0 || i >= dvi_system_invariant_count(I->system))
     return dvi__fail(DVI_BAD_ARGUMENT, "invariant: there is none of index %d; there are %d", i,
                      dvi_system_invariant_count(I->system));
-  if (i == 0) DVI_TRY(dvi__state_velocity(I, &I->now, I->v));
+  if (i == 0) {
+    DVI_TRY(dvi__integrator_velocities(I));
+    DVI_TRY(dvi__state_velocity(I, &I->now, I->v));
+  }
   return dvi__invariant(I->evaluator, I->now.t, I->now.q, I->v, I->now.p, i, value);
 }
 
@@ -541,6 +557,7 @@ dvi_status dvi_integrator_reactions(dvi_integrator *I, double *lambda)
   if (!I->started)
     return dvi__fail(DVI_BAD_STATE,
                      "reactions: the integrator has no state yet; call dvi_integrator_start first");
+  DVI_TRY(dvi__integrator_velocities(I));
   DVI_TRY(dvi__state_velocity(I, &I->now, I->v));
   return I->system->dynamics->reactions(I->evaluator, I->now.t, I->now.q, I->v, lambda);
 }

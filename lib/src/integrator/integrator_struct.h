@@ -14,7 +14,9 @@ struct dvi_integrator {
   dvi_counters counters;
   dvi__evaluator *evaluator; /* for diagnostics at one point */
   /* The present state, the state before the last step, and the work state of a step. A step that
-   * fails changes only `next`. Before the first step `last.p` holds the start's velocity. */
+   * fails changes only `next`. Before the first step `last.p` holds the start's velocity. The
+   * compensations of `last` and `next` are the same arrays, because only a step that is taken back
+   * needs those of `last`, and none can be once the next step has begun. */
   dvi__state now, last, next;
   double *numbers; /* storage of all three states */
   /* the number of balances that are kept, 0 or 1 + symmetries, and the invariants at the start */
@@ -22,7 +24,7 @@ struct dvi_integrator {
   double *at_start;
   /* the stepper's memory before the last step. Both memories change places with every step */
   double *memory_before;
-  double *v, *last_v;         /* [n] */
+  double *v, *last_v;         /* [n], NULL until first used (dvi__integrator_velocities) */
   size_t learned;             /* offset of the numbers of dvi__attempt in the stepper's memory */
   struct dvi__attempt *first; /* first attempt of a step that is taken again, or NULL (attempt.h) */
   struct dvi__hits *hits;     /* for contacts that are met at their times, or NULL (hits.h) */
@@ -32,7 +34,14 @@ struct dvi_integrator {
   double last_h_before; /* last_h before the last step */
 };
 
-/* Place the arrays of a state at *at, and move *at behind them. Copy a state with its arrays. */
+/* Make `v` and `last_v` unless they are there. Steps may use them only if create did this. */
+dvi_status dvi__integrator_velocities(dvi_integrator *integrator);
+
+/* Let `next` have the compensations of `last`. */
+void dvi__share_compensations(dvi_integrator *integrator);
+
+/* Place the arrays of a state at *at, and move *at behind them. Copy a state with its arrays. q and
+ * p are contiguous, and their compensations are, too. */
 void dvi__state_lay_out(const dvi_integrator *integrator, dvi__state *state, double **at);
 /* Find the side of the present state, unless it is known. */
 dvi_status dvi__integrator_find_side(dvi_integrator *integrator);
@@ -50,7 +59,7 @@ void dvi__explain_dependent_rows(const dvi_integrator *integrator, dvi__text *te
 
 void dvi__state_copy(const dvi_integrator *integrator, const dvi__state *from, dvi__state *to);
 
-/* Count the numbers of a state's arrays, which are contiguous. */
+/* Count the numbers of a state's arrays. */
 size_t dvi__state_numbers(const dvi_integrator *integrator);
 
 /* Guess the velocity of a general Lagrangian by the last step's mean velocity, or the start's. The

@@ -36,7 +36,8 @@ static void copy_state(size_t n, const dvi__state *from, dvi__state *to)
 {
   to->t = from->t;
   to->t_compensation = from->t_compensation;
-  memcpy(to->q, from->q, 4 * n * sizeof(double));
+  memcpy(to->q, from->q, 2 * n * sizeof(double));
+  memcpy(to->q_compensation, from->q_compensation, 2 * n * sizeof(double));
 }
 
 /* ---- trials ---- */

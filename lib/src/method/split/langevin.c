@@ -153,6 +153,7 @@ static dvi_status langevin_create(dvi__stepper *self)
   const dvi_status status = dvi__bath_create(self->system, 1, &own->bath);
   if (status != DVI_OK) return dvi__fail_in(status, "langevin");
   DVI_TRY(scheme_of(self) == OVIO ? create_inner(self, own) : create_explicit(self, own));
+  DVI_TRY(dvi__evaluator_prepare_symmetries(own->evaluator));
   if (self->system->row_count == 0) return DVI_OK;
   return dvi__rattle_create(own->free != NULL ? own->free : self->system, own->evaluator,
                             self->counters, &own->rattle);

@@ -89,7 +89,8 @@ static dvi_status moreau_jean_create(dvi__stepper *self)
   self->order = 1;
   self->memory_count = IMPULSES * (size_t)self->system->contact_count;
   DVI_TRY(reserve(self, own));
-  return dvi__evaluator_create(self->system, 1, DVI__GRADIENTS, self->counters, &own->evaluator);
+  DVI_TRY(dvi__evaluator_create(self->system, 1, DVI__GRADIENTS, self->counters, &own->evaluator));
+  return dvi__evaluator_prepare_symmetries(own->evaluator);
 }
 
 static void moreau_jean_destroy(dvi__stepper *self)

@@ -44,7 +44,11 @@ static const dvi__key keys[] = {
  * next step are sought. */
 typedef struct verlet {
   dvi__evaluator *evaluator;
-  double *change;          /* [2 n] a change, and forces */
+  /* [2 n] a change, and forces; NULL if each coordinate moves alone, by its momentum divided by its
+   * mass */
+  double *change;
+  dvi__division by;
+  double scalar;
   double *supply;          /* [1 + symmetries] */
   dvi__blocking *blocking; /* NULL without temporal blocking */
   dvi__friction *friction; /* NULL without forces that depend on the velocity */
@@ -102,6 +106,17 @@ static dvi_status create_terms(const dvi__stepper *self, verlet *own)
   return DVI_OK;
 }
 
+static dvi_status allocate_numbers(const dvi_system *s, verlet *own)
+{
+  const int alone = s->mass_diagonal != NULL && s->force_count == 0 && s->row_count == 0;
+  own->by = s->mass_scalar != 0 ? dvi__division_by(s->mass_scalar, &own->scalar) : DVI__BY_ARRAY;
+  if (!alone) own->change = DVI_NEW(double, 2 * (size_t)s->n);
+  own->supply = DVI_NEW(double, 1 + (size_t)s->symmetry_count);
+  return own->supply != NULL && (alone || own->change != NULL)
+             ? DVI_OK
+             : dvi__fail(DVI_NO_MEMORY, "verlet: no memory");
+}
+
 static dvi_status verlet_create(dvi__stepper *self)
 {
   verlet *own = self->own = DVI_NEW(verlet, 1);
@@ -111,10 +126,7 @@ static dvi_status verlet_create(dvi__stepper *self)
   self->memory_count = (size_t)self->system->n + 1 +
                        (1 + DVI__RATTLE_TREND) * (size_t)self->system->row_count;
   if (own == NULL) return dvi__fail(DVI_NO_MEMORY, "verlet: no memory");
-  own->change = DVI_NEW(double, 2 * (size_t)self->system->n);
-  own->supply = DVI_NEW(double, 1 + (size_t)self->system->symmetry_count);
-  if (own->change == NULL || own->supply == NULL)
-    return dvi__fail(DVI_NO_MEMORY, "verlet: no memory");
+  DVI_TRY(allocate_numbers(self->system, own));
   DVI_TRY(create_blocking(self, own));
   return create_terms(self, own);
 }
@@ -152,6 +164,31 @@ static void verlet_drift(const dvi__stepper *self, dvi__state *state, double h)
   dvi__mass_solve(own->evaluator, 1, state->p, own->change);
   for (int i = 0; i < self->system->n; i++) own->change[i] *= h;
   dvi__add_compensated_all(self->system->n, state->q, state->q_compensation, own->change);
+  dvi__add_compensated(&state->t, &state->t_compensation, h);
+}
+
+static dvi__phase verlet_phase_of(const dvi__state *state)
+{
+  return (dvi__phase){.q = state->q,
+                      .p = state->p,
+                      .q_compensation = state->q_compensation,
+                      .p_compensation = state->p_compensation};
+}
+
+/* Kick and drift each coordinate alone. */
+static void verlet_kick_drift(const dvi__stepper *self, dvi__state *state, double h)
+{
+  const verlet *own = self->own;
+  dvi__lanes_kick_drift(&(dvi__kick_drift){.count = (size_t)self->system->n,
+                                           .kicks = 1,
+                                           .kick = {-0.5 * h},
+                                           .drift = h,
+                                           .by = own->by,
+                                           .scalar = own->scalar,
+                                           .mass = self->system->mass_diagonal,
+                                           .force = self->memory,
+                                           .from = verlet_phase_of(state),
+                                           .to = verlet_phase_of(state)});
   dvi__add_compensated(&state->t, &state->t_compensation, h);
 }
 
@@ -219,22 +256,18 @@ static dvi_status verlet_step(dvi__stepper *self, dvi__state *state, double h)
   if (*verlet_gradient_known(self, self->memory) == 0) DVI_TRY(verlet_gradient(self, state));
   if (self->system->force_count > 0 || self->system->row_count > 0)
     return verlet_forced_step(self, state, h);
-  verlet_kick(self, state, 0.5 * h);
-  verlet_drift(self, state, h);
+  if (((const verlet *)self->own)->change == NULL) {
+    verlet_kick_drift(self, state, h);
+  } else {
+    verlet_kick(self, state, 0.5 * h);
+    verlet_drift(self, state, h);
+  }
   DVI_TRY(verlet_gradient(self, state));
   verlet_kick(self, state, 0.5 * h);
   return DVI_OK;
 }
 
 /* ---- temporal blocking ---- */
-
-static dvi__phase verlet_phase_of(const dvi__state *state)
-{
-  return (dvi__phase){.q = state->q,
-                      .p = state->p,
-                      .q_compensation = state->q_compensation,
-                      .p_compensation = state->p_compensation};
-}
 
 static int verlet_pass(dvi__stepper *self, const dvi__state *now, const double *before,
                        dvi__state *next, const double *h, int count)

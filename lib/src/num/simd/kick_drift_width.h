@@ -27,7 +27,7 @@ INLINE void NAME(fetch)(const dvi__kick_drift *l, size_t i)
   const double *const written[] = {l->to.p, l->to.p_compensation, l->to.q, l->to.q_compensation};
   for (int k = 0; k < 5; k++)
     __builtin_prefetch((const void *)((uintptr_t)(read[k] + i) + FETCH_AHEAD), 0);
-  for (int k = 0; k < 4; k++)
+  for (int k = 0; k < 4 && l->far == DVI__FAR_BOTH; k++)
     __builtin_prefetch((const void *)((uintptr_t)(written[k] + i) + FETCH_AHEAD), 1);
 }
 
@@ -38,7 +38,7 @@ INLINE size_t NAME(kick_drift)(const dvi__kick_drift *whole, size_t i, const int
   const dvi__kick_drift l = *whole;
   for (; i + WIDTH <= l.count; i += WIDTH) {
     NAME(vector) force, p, p_compensation, q, q_compensation, v;
-    if (l.far) NAME(fetch)(&l, i);
+    if (l.far != DVI__NEAR) NAME(fetch)(&l, i);
     NAME(load)(l.force + i, &force);
     NAME(load)(l.from.p + i, &p);
     NAME(load)(l.from.p_compensation + i, &p_compensation);
@@ -69,5 +69,52 @@ INLINE size_t NAME(add_scaled)(size_t i, size_t count, double factor, const doub
     NAME(store)(sum + i, &s, WIDTH);
     NAME(store)(compensation + i, &c, WIDTH);
   }
+  return i;
+}
+
+/* Store past the caches, in pairs of numbers if `in_pairs`. */
+INLINE void NAME(store_past)(double *out, const NAME(vector) * x, const int in_pairs)
+{
+#ifdef __x86_64__
+  for (int k = 0; k + 1 < WIDTH && in_pairs; k += 2)
+    _mm_stream_pd(out + k, (__m128d){((const double *)x)[k], ((const double *)x)[k + 1]});
+  for (int k = 0; k < WIDTH && (WIDTH == 1 || !in_pairs); k++) {
+    long long bits;
+    memcpy(&bits, (const double *)x + k, sizeof bits);
+    _mm_stream_si64((long long *)(out + k), bits);
+  }
+#else
+  (void)in_pairs;
+  NAME(store)(out, x, WIDTH);
+#endif
+}
+
+/* `doubt` stays 0 while all numbers are finite, because no other product with 0 is 0. */
+INLINE size_t NAME(last_kick)(const dvi__last_kick *whole, size_t i, const int past,
+                              const int in_pairs, double *doubt)
+{
+  const dvi__last_kick l = *whole;
+  NAME(vector) doubts = {0};
+  for (; i + WIDTH <= l.count; i += WIDTH) {
+    NAME(vector) force, p, p_compensation, q, q_compensation;
+    NAME(load)(l.force + i, &force);
+    NAME(load)(l.from.p + i, &p);
+    NAME(load)(l.from.p_compensation + i, &p_compensation);
+    NAME(load)(l.from.q + i, &q);
+    NAME(kick_by)(l.kick, &force, &p, &p_compensation);
+    doubts += 0 * p + 0 * q;
+    if (!past) {
+      NAME(store)(l.to.p + i, &p, WIDTH);
+      NAME(store)(l.to.p_compensation + i, &p_compensation, WIDTH);
+      continue;
+    }
+    NAME(load)(l.from.q_compensation + i, &q_compensation);
+    NAME(store_past)(l.to.q + i, &q, in_pairs);
+    NAME(store_past)(l.to.p + i, &p, in_pairs);
+    NAME(store_past)(l.to.q_compensation + i, &q_compensation, in_pairs);
+    NAME(store_past)(l.to.p_compensation + i, &p_compensation, in_pairs);
+    NAME(store_past)(l.force_to + i, &force, in_pairs);
+  }
+  for (int k = 0; k < WIDTH; k++) *doubt += doubts[k];
   return i;
 }

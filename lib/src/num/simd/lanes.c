@@ -6,6 +6,10 @@
 #include <stdint.h>
 #include <string.h>
 
+#ifdef __x86_64__
+#include <emmintrin.h>
+#endif
+
 #include "num/simd/width.h"
 
 int dvi__lanes_for(int stages)
@@ -13,7 +17,7 @@ int dvi__lanes_for(int stages)
   return stages <= 2 ? stages : stages <= 4 ? 4 : (stages + 7) / 8 * 8;
 }
 
-enum { FETCH_AHEAD = 1024 }; /* in bytes; half of it is as good, twice as much is worse */
+enum { FETCH_AHEAD = 2048 }; /* in bytes; half of it is nearly as good */
 
 /* A fused product gives the rounding error of a product. Where the processor has none, the library
  * function gives the same bits. */
@@ -186,6 +190,34 @@ INLINE void add_scaled(int widest, size_t count, double factor, const double *x,
   (void)add_scaled1(i, count, factor, x, sum, compensation);
 }
 
+INLINE void last_kick_past(int widest, const dvi__last_kick *l, const int past, const int in_pairs,
+                           double *doubt)
+{
+  size_t i = 0;
+  if (widest == 8)
+    i = last_kick8(l, i, past, in_pairs, doubt);
+  else if (widest == 4)
+    i = last_kick4(l, i, past, in_pairs, doubt);
+  else
+    i = last_kick2(l, i, past, in_pairs, doubt);
+  (void)last_kick1(l, i, past, in_pairs, doubt);
+}
+
+/* Pairs of numbers are stored past the caches if no pair straddles lines. */
+INLINE int last_kick(int widest, const dvi__last_kick *l)
+{
+  const uintptr_t all = (uintptr_t)l->to.q | (uintptr_t)l->to.p | (uintptr_t)l->to.q_compensation |
+                        (uintptr_t)l->to.p_compensation | (uintptr_t)l->force_to;
+  double doubt = 0;
+  if (!l->past)
+    last_kick_past(widest, l, 0, 0, &doubt);
+  else if (all % (2 * sizeof(double)) == 0)
+    last_kick_past(widest, l, 1, 1, &doubt);
+  else
+    last_kick_past(widest, l, 1, 0, &doubt);
+  return doubt == 0;
+}
+
 /* ---- instruction sets ---- */
 
 typedef struct level {
@@ -202,6 +234,7 @@ typedef struct level {
   int (*all_finite)(size_t count, const double *x);
   double (*largest)(size_t count, const double *x);
   void (*kick_drift)(const dvi__kick_drift *l);
+  int (*last_kick)(const dvi__last_kick *l);
   void (*add_scaled)(size_t count, double factor, const double *x, double *sum,
                      double *compensation);
 } level;
@@ -267,6 +300,10 @@ typedef struct level {
   {                                                                                       \
     kick_drift(widest, l);                                                                \
   }                                                                                       \
+  target static int last_kick_##suffix(const dvi__last_kick *l)                           \
+  {                                                                                       \
+    return last_kick(widest, l);                                                          \
+  }                                                                                       \
   target static void add_scaled_##suffix(size_t count, double factor, const double *x,    \
                                          double *sum, double *compensation)               \
   {                                                                                       \
@@ -284,7 +321,8 @@ LEVEL(avx512, __attribute__((target("fma,avx512f,avx512dq,avx512vl"))), 8, 4)
     .name = #suffix, .weigh = weigh_##suffix, .split = split_##suffix, .begin = begin_##suffix, \
     .begin_from = begin_from_##suffix, .ends = ends_##suffix, .product = product_##suffix,      \
     .all_finite = all_finite_##suffix, .largest = largest_##suffix,                             \
-    .kick_drift = kick_drift_##suffix, .add_scaled = add_scaled_##suffix, .iterate = {          \
+    .kick_drift = kick_drift_##suffix, .last_kick = last_kick_##suffix,                         \
+    .add_scaled = add_scaled_##suffix, .iterate = {                                             \
       iterate_0_##suffix,                                                                       \
       iterate_1_##suffix,                                                                       \
       iterate_2_##suffix,                                                                       \
@@ -394,6 +432,18 @@ double dvi__lanes_largest(size_t count, const double *x)
 void dvi__lanes_kick_drift(const dvi__kick_drift *kick_drift)
 {
   best()->kick_drift(kick_drift);
+}
+
+void dvi__lanes_await_stores(void)
+{
+#ifdef __x86_64__
+  _mm_sfence();
+#endif
+}
+
+int dvi__lanes_last_kick(const dvi__last_kick *last_kick)
+{
+  return best()->last_kick(last_kick);
 }
 
 void dvi__lanes_add_scaled(size_t count, double factor, const double *x, double *sum,

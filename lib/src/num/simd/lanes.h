@@ -83,6 +83,9 @@ typedef struct dvi__phase {
  * mass, DVI__BY_ARRAY by the mass of each coordinate. */
 typedef enum dvi__division { DVI__TIMES_SCALAR, DVI__BY_SCALAR, DVI__BY_ARRAY } dvi__division;
 
+/* Which numbers of a kick and a drift come from memory and not from a cache. */
+typedef enum dvi__far { DVI__NEAR, DVI__FAR_FROM, DVI__FAR_BOTH } dvi__far;
+
 /* Kicks and a drift. p <- p + kick_k force for one kick or two, then q <- q + drift v, all sums
  * compensated (num/compensated.h). */
 typedef struct dvi__kick_drift {
@@ -94,10 +97,28 @@ typedef struct dvi__kick_drift {
   const double *mass;  /* [count] for DVI__BY_ARRAY */
   const double *force; /* [count] */
   dvi__phase from, to; /* [count] each, the same or apart */
-  int far;             /* all of these come from memory, not from a cache */
+  dvi__far far;
 } dvi__kick_drift;
 
 void dvi__lanes_kick_drift(const dvi__kick_drift *kick_drift);
+
+/* The last kick, p <- p + kick force. If `past` is not 0, all five arrays are stored to `to` and
+ * `force_to` past the caches. A plain store reads the line first of which it overwrites a number.
+ * Else p alone is stored, and `to` is `from`. */
+typedef struct dvi__last_kick {
+  size_t count;
+  double kick;
+  const double *force; /* [count] */
+  dvi__phase from, to; /* [count] each */
+  double *force_to;    /* [count] */
+  int past;
+} dvi__last_kick;
+
+/* Take the last kick. Returns 0 if a number of the new p or of q is NaN or Inf. */
+int dvi__lanes_last_kick(const dvi__last_kick *last_kick);
+
+/* Let other threads see what was stored past the caches before what this one writes next. */
+void dvi__lanes_await_stores(void);
 
 /* Choose the division by one mass and its scalar. */
 dvi__division dvi__division_by(double mass, double *scalar);

@@ -2,6 +2,7 @@
 
 #include <stdatomic.h>
 #include <stddef.h>
+#include <stdint.h>
 #include <string.h>
 
 #include "core/memory.h"
@@ -17,6 +18,13 @@ enum { LINE = 8, BLOCK = 512, WINDOW = 24 * 1024 };
 /* A pass reads and writes five arrays, q, p, their compensations, and the gradient. */
 enum { ARRAYS = 5 };
 
+/* Chains of so many coordinates leave no cache large enough for the states before and after a step.
+ * The operations then work in a window of their own, from which the new state goes to memory past
+ * the caches. Lines that a plain store writes would be read first. While a block is computed no
+ * memory is read, unless the processor looks ahead to the next block. Blocks are therefore short
+ * where a pass computes little. */
+enum { LONG_CHAIN = 400 * 1000, SHORT_BLOCK = 64 };
+
 struct dvi__blocking {
   const dvi_system *system;
   int threads;
@@ -26,15 +34,22 @@ struct dvi__blocking {
   /* [threads*block] one potential's gradient, before it is added to the others; NULL for a single
    * potential */
   double *term;
+  double *windows; /* [threads][ARRAYS][length], or NULL */
+  ptrdiff_t length;
   dvi__team *team;
   atomic_int *begun; /* [threads] not 0 if the left neighbour may cross the cut */
 };
 
-static atomic_int chosen_block;
+static atomic_int chosen_block, least_long_chain = LONG_CHAIN;
 
 void dvi__blocking_choose_block(int block)
 {
   atomic_store(&chosen_block, block);
+}
+
+void dvi__blocking_choose_long_chain(int coordinates)
+{
+  atomic_store(&least_long_chain, coordinates > 0 ? coordinates : LONG_CHAIN);
 }
 
 /* ---- create, destroy ---- */
@@ -51,6 +66,36 @@ const char *dvi__blocking_obstacle(const dvi_system *system)
   return NULL;
 }
 
+/* Return how many coordinates a pass of so many substeps has in work behind its block. */
+static ptrdiff_t in_work(const dvi__blocking *w, int count)
+{
+  return 2 * count * w->lag;
+}
+
+/* Return the length of the window of such a pass. It holds a block, what is in work, and as much of
+ * the right neighbour's. If that is more than a block, there is room to move it more seldom. */
+static ptrdiff_t length_of_window(const dvi__blocking *w, int count)
+{
+  const ptrdiff_t work = in_work(w, count), moved = work > w->block ? 4 * work : 2 * work;
+  return (w->block + moved + w->lag + LINE - 1) / LINE * LINE;
+}
+
+/* Allocate windows for the passes whose windows fit into a cache. */
+static int allocate_windows(dvi__blocking *w)
+{
+  int count = dvi__blocking_depth(w);
+  while (count > 0 && length_of_window(w, count) > WINDOW) count--;
+  if (count == 0 || w->system->n < atomic_load(&least_long_chain)) return 1;
+  w->length = length_of_window(w, count);
+  w->windows = DVI_NEW(double, (size_t)w->threads *ARRAYS *(size_t)w->length);
+  return w->windows != NULL;
+}
+
+static int has_windows(const dvi__blocking *w, int count)
+{
+  return w->windows != NULL && length_of_window(w, count) <= w->length;
+}
+
 static dvi_status blocking_initialise(dvi__blocking *w)
 {
   const int potentials = w->system->potential_count, block = atomic_load(&chosen_block);
@@ -65,7 +110,7 @@ static dvi_status blocking_initialise(dvi__blocking *w)
                                       : DVI__BY_ARRAY;
   w->begun = DVI_NEW(atomic_int, w->threads);
   if (potentials > 1) w->term = DVI_NEW(double, w->threads * w->block);
-  if (w->begun == NULL || (potentials > 1 && w->term == NULL))
+  if (w->begun == NULL || (potentials > 1 && w->term == NULL) || !allocate_windows(w))
     return dvi__fail(DVI_NO_MEMORY, "temporal blocking: no memory for %d threads", w->threads);
   return w->threads > 1 ? dvi__team_create(w->threads, &w->team) : DVI_OK;
 }
@@ -90,6 +135,7 @@ void dvi__blocking_destroy(dvi__blocking **blocking)
   dvi__team_destroy(&w->team);
   dvi__release(w->begun);
   dvi__release(w->term);
+  dvi__release(w->windows);
   dvi__release(w);
   *blocking = NULL;
 }
@@ -108,8 +154,14 @@ typedef struct pass {
  * at the ends of the chain. */
 typedef struct part {
   pass *pass;
-  ptrdiff_t begin, end;
+  ptrdiff_t begin, end, block;
   double *term;
+  /* the window, with coordinates first to last-1 of `length`, or NULL to work in `to` itself */
+  double *window;
+  ptrdiff_t length, first, last;
+  /* where coordinate 0 would be if the window reached that far */
+  dvi__phase at;
+  double *gradient;
 } part;
 
 typedef struct range {
@@ -130,7 +182,7 @@ static void blocking_kick_drift(const part *own, int k, range r)
 {
   const dvi__blocking *w = own->pass->blocking;
   const dvi__blocking_step *s = &own->pass->step;
-  const double *gradient = k == 0 && s->gradient != NULL ? s->gradient : s->gradient_to;
+  const double *gradient = k == 0 && s->gradient != NULL ? s->gradient : own->gradient;
   const dvi__kick_drift kick_drift = {
       .count = (size_t)(r.last - r.first),
       .kicks = k == 0 ? 1 : 2,
@@ -140,9 +192,11 @@ static void blocking_kick_drift(const part *own, int k, range r)
       .scalar = w->scalar,
       .mass = w->by == DVI__BY_ARRAY ? w->system->mass_diagonal + r.first : NULL,
       .force = gradient + r.first,
-      .from = phase_at(k == 0 ? &s->from : &s->to, r.first),
-      .to = phase_at(&s->to, r.first),
-      .far = k == 0};
+      .from = phase_at(k == 0 ? &s->from : &own->at, r.first),
+      .to = phase_at(&own->at, r.first),
+      .far = k > 0                 ? DVI__NEAR
+             : own->window != NULL ? DVI__FAR_FROM
+                                   : DVI__FAR_BOTH};
   dvi__lanes_kick_drift(&kick_drift);
 }
 
@@ -155,7 +209,7 @@ WIDE static void add_term(size_t count, const double *restrict term, double *res
 static int blocking_gradient(const part *own, double t, const double *q, range r)
 {
   const dvi_system *system = own->pass->blocking->system;
-  double *sum = own->pass->step.gradient_to + r.first;
+  double *sum = own->gradient + r.first;
   const size_t count = (size_t)(r.last - r.first);
   for (int k = 0; k < system->potential_count; k++) {
     const dvi_potential *asked = &system->potentials[k].callbacks;
@@ -164,18 +218,86 @@ static int blocking_gradient(const part *own, double t, const double *q, range r
       return 0;
     if (k > 0) add_term(count, own->term, sum);
   }
-  return dvi__lanes_all_finite(count, sum);
+  return 1;
+}
+
+/* Test the forces of a kick that a drift and other callbacks follow. A last kick tests itself. */
+static int gradient_is_finite(const part *own, range r)
+{
+  return dvi__lanes_all_finite((size_t)(r.last - r.first), own->gradient + r.first);
 }
 
 /* Take the last kick, which leaves the new state. */
 static int blocking_last_kick(const part *own, range r)
 {
   const dvi__blocking_step *s = &own->pass->step;
-  const dvi__phase to = phase_at(&s->to, r.first);
-  const size_t count = (size_t)(r.last - r.first);
-  dvi__lanes_add_scaled(count, -0.5 * s->h[s->count - 1], s->gradient_to + r.first, to.p,
-                        to.p_compensation);
-  return dvi__lanes_all_finite(count, to.p) && dvi__lanes_all_finite(count, to.q);
+  return dvi__lanes_last_kick(&(dvi__last_kick){.count = (size_t)(r.last - r.first),
+                                                .kick = -0.5 * s->h[s->count - 1],
+                                                .force = own->gradient + r.first,
+                                                .from = phase_at(&own->at, r.first),
+                                                .to = phase_at(&s->to, r.first),
+                                                .force_to = s->gradient_to + r.first,
+                                                .past = own->window != NULL});
+}
+
+/* ---- windows ---- */
+
+/* Give the five arrays of the new state, and those of a window. */
+static void arrays_of(const part *own, double *to[ARRAYS], double *in[ARRAYS])
+{
+  const dvi__blocking_step *s = &own->pass->step;
+  double *const arrays[] = {s->to.q, s->to.p, s->to.q_compensation, s->to.p_compensation,
+                            s->gradient_to};
+  for (int k = 0; k < ARRAYS; k++) {
+    to[k] = arrays[k];
+    in[k] = own->window + k * own->pass->blocking->length;
+  }
+}
+
+/* Return where coordinate 0 of an array would be, of which coordinate `first` is at `at`. The
+ * operations use no address before the array itself. */
+static double *origin_of(double *at, ptrdiff_t first)
+{
+  return (double *)((uintptr_t)at - (uintptr_t)first * sizeof(double));
+}
+
+/* Let the operations find coordinate `first` at the front of the window. */
+static void place_window(part *own, ptrdiff_t first)
+{
+  double *to[ARRAYS], *in[ARRAYS];
+  arrays_of(own, to, in);
+  for (int k = 0; k < ARRAYS; k++) in[k] = origin_of(in[k], first);
+  own->first = first;
+  own->at = (dvi__phase){.q = in[0], .p = in[1], .q_compensation = in[2], .p_compensation = in[3]};
+  own->gradient = in[4];
+}
+
+/* Move the window. The last kick has written the coordinates before `first` to memory, but for
+ * those that the left neighbour continues. */
+static void slide_window(part *own, ptrdiff_t first)
+{
+  double *to[ARRAYS], *in[ARRAYS];
+  const ptrdiff_t done = first - own->first, kept = own->last - first,
+                  behind = (2 * own->pass->step.count - 1) * own->pass->blocking->lag;
+  if (own->window == NULL || done <= 0) return;
+  arrays_of(own, to, in);
+  for (int k = 0; k < ARRAYS; k++) {
+    if (own->first == own->begin && own->begin > 0)
+      memcpy(to[k] + own->first, in[k], (size_t)behind * sizeof(double));
+    memmove(in[k], in[k] + done, (size_t)kept * sizeof(double));
+  }
+  place_window(own, first);
+}
+
+/* Take in what the right neighbour has left of its first coordinates. */
+static void take_neighbours(part *own, ptrdiff_t count)
+{
+  double *to[ARRAYS], *in[ARRAYS];
+  if (own->window == NULL) return;
+  arrays_of(own, to, in);
+  for (int k = 0; k < ARRAYS; k++)
+    memcpy(in[k] + (own->end - own->first), to[k] + own->end, (size_t)count * sizeof(double));
+  own->last = own->end + count;
 }
 
 /* ---- one thread ---- */
@@ -184,7 +306,7 @@ static int blocking_last_kick(const part *own, range r)
  * on. */
 static range range_at(const part *own, ptrdiff_t x, ptrdiff_t lag)
 {
-  const ptrdiff_t n = own->pass->blocking->system->n, block = own->pass->blocking->block;
+  const ptrdiff_t n = own->pass->blocking->system->n, block = own->block;
   const ptrdiff_t least = own->begin == 0 ? 0 : own->begin + lag,
                   most = own->end == n ? n : own->end + lag;
   const range r = {x - lag > least ? x - lag : least,
@@ -198,13 +320,16 @@ static int work_at(const part *own, ptrdiff_t x)
   const dvi__blocking_step *s = &own->pass->step;
   const ptrdiff_t lag = own->pass->blocking->lag;
   range r = range_at(own, x, 0);
-  if (s->gradient == NULL && r.first < r.last && !blocking_gradient(own, s->t0, s->from.q, r))
+  if (s->gradient == NULL && r.first < r.last &&
+      !(blocking_gradient(own, s->t0, s->from.q, r) && gradient_is_finite(own, r)))
     return 0;
   for (int k = 0; k < s->count; k++) {
     r = range_at(own, x, 2 * k * lag);
     if (r.first < r.last) blocking_kick_drift(own, k, r);
     r = range_at(own, x, (2 * k + 1) * lag);
-    if (r.first < r.last && !blocking_gradient(own, s->t[k], s->to.q, r)) return 0;
+    if (r.first >= r.last) continue;
+    if (!blocking_gradient(own, s->t[k], own->at.q, r)) return 0;
+    if (k < s->count - 1 && !gradient_is_finite(own, r)) return 0;
   }
   return r.first >= r.last || blocking_last_kick(own, r);
 }
@@ -218,26 +343,41 @@ static int blocking_await_neighbour(const part *own, int neighbour)
   return 1;
 }
 
+/* Let the left neighbour cross the cut, once all that it needs is in memory. */
+static void let_neighbour_begin(part *own, int member)
+{
+  dvi__lanes_await_stores();
+  atomic_store(&own->pass->blocking->begun[member], 1);
+}
+
 /* Run the part of one thread. Behind `clear` the thread touches no coordinate of the left
  * neighbour, which writes `behind` coordinates beyond the cut and reads one reach more. Before
  * `clear` no thread waits for another, so that all threads get there. */
-static int blocking_run_part(const part *own, int member)
+static int blocking_run_part(part *own, int member)
 {
   const dvi__blocking *w = own->pass->blocking;
   const ptrdiff_t behind = (2 * own->pass->step.count - 1) * w->lag,
                   clear = own->begin + 2 * (behind + w->lag);
-  const int last = member == own->pass->members - 1;
-  const ptrdiff_t end = (last ? own->end : own->end + behind) + behind;
-  int waits = !last, good = 1;
-  for (ptrdiff_t x = own->begin; x < end && good; x += w->block) {
-    if (x >= clear) atomic_store(&w->begun[member], 1);
-    if (waits && x + w->block + w->lag > own->end) {
+  const int is_last = member == own->pass->members - 1;
+  const ptrdiff_t last = is_last ? own->end : own->end + behind, end = last + behind;
+  int waits = !is_last, tells = 1, good = 1;
+  for (ptrdiff_t x = own->begin; x < end && good; x += own->block) {
+    const int meets = waits && x + own->block + w->lag > own->end;
+    const int is_clear = tells && x >= clear;
+    if (is_clear || meets || x + own->block > own->first + own->length)
+      slide_window(own, x - behind - w->lag);
+    if (is_clear) let_neighbour_begin(own, member);
+    tells = tells && !is_clear;
+    if (own->last < own->end) own->last = x + own->block < own->end ? x + own->block : own->end;
+    if (meets) {
       good = blocking_await_neighbour(own, member + 1);
+      if (good) take_neighbours(own, behind + w->lag);
       waits = 0;
     }
     good = good && !atomic_load_explicit(&own->pass->failed, memory_order_relaxed) &&
            work_at(own, x);
   }
+  dvi__lanes_await_stores();
   return good;
 }
 
@@ -251,8 +391,19 @@ static void blocking_take_part(void *user, int member)
 {
   pass *p = user;
   const dvi__blocking *w = p->blocking;
-  const part own = {p, blocking_cut(p, member), blocking_cut(p, member + 1),
-                    w->term != NULL ? w->term + member * w->block : NULL};
+  part own = {.pass = p,
+              .begin = blocking_cut(p, member),
+              .end = blocking_cut(p, member + 1),
+              .block = w->block,
+              .term = w->term != NULL ? w->term + member * w->block : NULL,
+              .at = p->step.to,
+              .gradient = p->step.gradient_to};
+  if (has_windows(w, p->step.count)) {
+    own.window = w->windows + member * ARRAYS * w->length;
+    own.length = length_of_window(w, p->step.count);
+    if (own.block > SHORT_BLOCK * p->step.count) own.block = SHORT_BLOCK * p->step.count;
+    place_window(&own, own.begin);
+  }
   if (!blocking_run_part(&own, member)) atomic_store(&p->failed, 1);
 }
 
@@ -301,10 +452,12 @@ int dvi__blocking_run(dvi__blocking *w, const dvi__blocking_step *step)
   return 1;
 }
 
-/* The first pass goes from one array to another, and later passes stay there. */
+/* The first pass goes from one array to another, whose lines are read first unless a window is
+ * written past the caches. Later passes stay there. */
 double dvi__blocking_traffic(const dvi__blocking *w, int count)
 {
   const int depth = dvi__blocking_depth(w), passes = (count + depth - 1) / depth;
-  const int arrays = 3 * ARRAYS + 2 * ARRAYS * (passes - 1) + (w->by == DVI__BY_ARRAY ? passes : 0);
+  const int fetched = has_windows(w, count < depth ? count : depth) ? 0 : ARRAYS;
+  const int arrays = 2 * ARRAYS * passes + fetched + (w->by == DVI__BY_ARRAY ? passes : 0);
   return (double)arrays * (double)sizeof(double) * w->system->n;
 }

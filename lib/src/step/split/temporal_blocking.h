@@ -21,6 +21,9 @@
  * times at once, and each coordinate undergoes the same operations, bit for bit, as without
  * blocking.
  *
+ * The operations on a long chain work in a window, which moves along with them. The last one writes
+ * the new state to memory, past the caches.
+ *
  * Each thread takes a part of the chain. A part begins where it can without its left neighbour,
  * operation number l at l r to the right of the cut. There the thread leaves a staircase of
  * coordinates at the times that the left neighbour needs. The left neighbour continues over the cut
@@ -72,5 +75,8 @@ double dvi__blocking_traffic(const dvi__blocking *blocking, int count);
 /* Set the block length for blockings that are created from now on, for tests (default 0, the usual
  * length). */
 void dvi__blocking_choose_block(int block);
+
+/* Set from how many coordinates on a chain counts as long, likewise for tests. */
+void dvi__blocking_choose_long_chain(int coordinates);
 
 #endif

@@ -1,5 +1,6 @@
 /* A constant mass M and potentials have L = v.Mv/2 - V(t,q), so that v = M^-1 p. With a vector
  * potential L = v.Mv/2 + A(t,q).v - V(t,q), so that v = M^-1 (p - A). */
+#include <math.h>
 #include <string.h>
 
 #include "core/status.h"
@@ -26,19 +27,35 @@ static dvi_status prepare_mass(dvi__evaluator *e, dvi__derivatives most)
   return dvi__linear_factor(e->velocity, system->mass_values);
 }
 
+static dvi_status velocity_is_not_finite(double t)
+{
+  return dvi__fail(DVI_NOT_FINITE, "the velocity M^-1 p at t = %.6g is not finite", t);
+}
+
+/* Each number is its own, and needs no room but v. */
+static dvi_status velocity_by_diagonal(dvi__evaluator *e, double t, const double *p, double *v)
+{
+  const double *m = e->system->mass_diagonal;
+  for (int i = 0; i < e->system->n; i++)
+    if (!isfinite(p[i] / m[i])) return velocity_is_not_finite(t);
+  dvi__mass_solve(e, 1, p, v);
+  return DVI_OK;
+}
+
 static dvi_status velocity_by_mass(dvi__evaluator *e, double t, const double *q, const double *p,
                                    double *v)
 {
   const size_t n = (size_t)e->system->n;
   double *found = e->point[1];
+  if (e->system->mass_diagonal != NULL && e->system->vector == NULL)
+    return velocity_by_diagonal(e, t, p, v);
   memcpy(found, p, n * sizeof *found);
   if (e->system->vector != NULL) {
     DVI_TRY(dvi__vector_potential(e, 1, &t, q, e->point[2]));
     for (size_t i = 0; i < n; i++) found[i] -= e->point[2][i];
   }
   dvi__mass_solve(e, 1, found, found);
-  if (dvi__first_not_finite(n, found) >= 0)
-    return dvi__fail(DVI_NOT_FINITE, "the velocity M^-1 p at t = %.6g is not finite", t);
+  if (dvi__first_not_finite(n, found) >= 0) return velocity_is_not_finite(t);
   memcpy(v, found, n * sizeof *v);
   return DVI_OK;
 }

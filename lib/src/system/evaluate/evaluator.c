@@ -24,17 +24,35 @@ static int allocate_general(dvi__evaluator *e)
   return e->unwanted && e->velocity_search && e->hessian[0] && e->hessian[1] && e->hessian[2];
 }
 
+/* Test whether functions of one point need no room for vectors, but for symmetries: a diagonal mass
+ * and potentials. Large systems of this kind should cost little more memory than their states. */
+static int is_lean(const dvi__evaluator *e)
+{
+  const dvi_system *s = e->system;
+  return e->capacity == 1 && dvi__only_potentials(s) && s->mass_diagonal != NULL && s->damping == 0;
+}
+
+/* Return the length of `term`, which has the value of a potential at each point if nothing else is
+ * summed. */
+static size_t length_of_term(const dvi__evaluator *e, int hessians)
+{
+  const size_t points = (size_t)e->capacity;
+  return !hessians && is_lean(e) && e->system->potential_count <= 1
+             ? points
+             : points * (size_t)dvi__longest_hessian(e->system, hessians);
+}
+
 /* Allocate scratch memory and `term`, with room for potentials' Hessians or without, in place of
  * what is there. */
 static dvi_status evaluator_allocate_scratch(dvi__evaluator *e, int hessians)
 {
   const dvi_system *system = e->system;
-  const size_t longest = (size_t)dvi__longest_hessian(system, hessians);
+  const size_t length = length_of_term(e, hessians);
   dvi__scratch scratch;
   DVI_TRY(dvi__scratch_create(system, e->capacity, hessians, &scratch));
-  double *term = DVI_NEW(double, longest *(size_t)e->capacity), *by_v = NULL;
+  double *term = DVI_NEW(double, length), *by_v = NULL;
   const int has_by_v = hessians && system->force_count > 0;
-  if (has_by_v) by_v = DVI_NEW(double, longest *(size_t)e->capacity);
+  if (has_by_v) by_v = DVI_NEW(double, length);
   if (term == NULL || (has_by_v && by_v == NULL)) {
     dvi__scratch_clear(&scratch);
     dvi__release(term);
@@ -59,10 +77,19 @@ dvi_status dvi__evaluator_prepare_hessians(dvi__evaluator *e)
   return evaluator_allocate_scratch(e, 1);
 }
 
+dvi_status dvi__evaluator_prepare_symmetries(dvi__evaluator *e)
+{
+  if (e->point[2] == NULL) e->point[2] = DVI_NEW(double, e->system->n);
+  return e->point[2] != NULL
+             ? DVI_OK
+             : dvi__fail(DVI_NO_MEMORY, "evaluator: no memory for %d numbers", e->system->n);
+}
+
 static dvi_status evaluator_allocate(dvi__evaluator *e, int hessians)
 {
   const dvi_system *system = e->system;
   DVI_TRY(hessians ? dvi__evaluator_prepare_hessians(e) : evaluator_allocate_scratch(e, 0));
+  if (is_lean(e)) return DVI_OK;
   for (int i = 0; i < 3; i++) e->point[i] = DVI_NEW(double, system->n);
   if (e->point[0] && e->point[1] && e->point[2] &&
       (system->lagrangian == NULL || allocate_general(e)))
@@ -168,10 +195,12 @@ void dvi__count_differences(dvi__evaluator *e)
 static void constant_mass_energy(dvi__evaluator *e, int count, const double *v, double *T)
 {
   const size_t points = (size_t)count;
+  const double *m = e->system->mass_diagonal;
   memset(T, 0, points * sizeof(double));
-  mass_times(e->system, count, v, e->term);
+  if (m == NULL) mass_times(e->system, count, v, e->term);
   for (size_t i = 0; i < (size_t)e->system->n; i++)
-    for (size_t k = 0; k < points; k++) T[k] += 0.5 * v[i * points + k] * e->term[i * points + k];
+    for (size_t k = 0, at = i * points; k < points; k++, at++)
+      T[k] += 0.5 * v[at] * (m != NULL ? m[i] * v[at] : e->term[at]);
 }
 
 /* Add x.v to a sum [count], with x in e->term. */

@@ -22,6 +22,10 @@ dvi_status dvi__evaluator_create(const dvi_system *system, int capacity, dvi__de
                                  dvi_counters *counters, dvi__evaluator **evaluator);
 void dvi__evaluator_destroy(dvi__evaluator **evaluator);
 
+/* Make the room of symmetries, which dvi__invariant otherwise makes when it is first needed, for
+ * steps that call dvi__supply without declared forces. */
+dvi_status dvi__evaluator_prepare_symmetries(dvi__evaluator *e);
+
 /* Let an evaluator that was created without Hessians evaluate them, too, from now on. On failure it
  * is as it was: DVI_NO_MEMORY, DVI_BAD_SIZE. */
 dvi_status dvi__evaluator_prepare_hessians(dvi__evaluator *e);

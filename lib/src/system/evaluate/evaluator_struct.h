@@ -13,7 +13,9 @@ struct dvi__evaluator {
   double *term;       /* one term's gradient or Hessian, before addition to the others */
   double *force_by_v; /* F_v of one force, or NULL */
   int has_hessians;   /* scratch and term have room for potentials' Hessians */
-  double *point[3];   /* work [n] at one point */
+  /* work [n] at one point; for a diagonal mass and potentials NULL, but for the last one, which
+   * dvi__evaluator_prepare_symmetries makes */
+  double *point[3];
   /* Factors the matrix by which the kind of dynamics finds velocities, or NULL. */
   dvi__linear *velocity;
   /* Receives the half of a general Lagrangian's gradient that nobody needs. */

@@ -21,6 +21,7 @@ static dvi_status invariant_verdict(int returned, const char *name)
 static dvi_status momentum_map(dvi__evaluator *e, const dvi_symmetry *symmetry, const double *q,
                                const double *p, double *J)
 {
+  DVI_TRY(dvi__evaluator_prepare_symmetries(e));
   double *xi = e->point[2];
   *J = 0;
   DVI_TRY(invariant_verdict(symmetry->generator(q, xi, symmetry->user), symmetry->name));
@@ -59,15 +60,16 @@ dvi_status dvi__supply(dvi__evaluator *e, int count, const double *weight, const
 {
   const dvi_system *s = e->system;
   const size_t points = (size_t)count;
-  double *at_q = e->point[0], *at_F = e->point[1];
   for (int i = 0; i <= s->symmetry_count; i++) supply[i] = 0;
   for (size_t k = 0; k < points; k++) {
+    const double *at_q = q, *at_F = F;
     double power = 0;
-    for (size_t i = 0; i < (size_t)s->n; i++) at_q[i] = q[i * points + k];
-    for (size_t i = 0; i < (size_t)s->nv; i++) {
-      at_F[i] = F[i * points + k];
-      power += at_F[i] * v[i * points + k];
+    if (count > 1) {
+      dvi__gather_point(s->n, count, (int)k, q, e->point[0]);
+      dvi__gather_point(s->nv, count, (int)k, F, e->point[1]);
+      at_q = e->point[0], at_F = e->point[1];
     }
+    for (size_t i = 0; i < (size_t)s->nv; i++) power += at_F[i] * v[i * points + k];
     supply[0] += weight[k] * power;
     for (int i = 0; i < s->symmetry_count; i++) {
       double torque;

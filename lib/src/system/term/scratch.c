@@ -91,14 +91,26 @@ void dvi__differences_clear(dvi__differences *d)
   dvi__release(d->minus_v);
 }
 
-static int scratch_allocate(const dvi_system *system, int capacity, int hessians, dvi__scratch *s)
+int dvi__only_potentials(const dvi_system *system)
 {
-  const size_t numbers = (size_t)system->n * (size_t)capacity;
+  return system->lagrangian == NULL && system->constraint == NULL && system->vector == NULL &&
+         system->force_count == 0 && system->row_count == 0 && system->slot_count == 0;
+}
+
+static int allocate_points(const dvi_system *system, int hessians, dvi__scratch *s)
+{
   s->point_q = DVI_NEW(double, system->n);
   s->point_v = DVI_NEW(double, system->n);
   for (int k = 0; k < 3; k++)
     s->result[k] = DVI_NEW(double, dvi__longest_hessian(system, hessians));
-  if (!s->point_q || !s->point_v || !s->result[0] || !s->result[1] || !s->result[2]) return 0;
+  return s->point_q && s->point_v && s->result[0] && s->result[1] && s->result[2];
+}
+
+static int scratch_allocate(const dvi_system *system, int capacity, int hessians, dvi__scratch *s)
+{
+  const size_t numbers = (size_t)system->n * (size_t)capacity;
+  const int in_place = capacity == 1 && !hessians && dvi__only_potentials(system);
+  if (!in_place && !allocate_points(system, hessians, s)) return 0;
   if (system->vector != NULL) {
     const size_t entries = (size_t)dvi__pattern_entries(&system->vector->gradients);
     s->vector_q = DVI_NEW(double, entries *(size_t)capacity);

@@ -40,6 +40,14 @@ void dvi__scatter_result(int entries, int count, int k, const double *point, dou
 
 /* ---- potentials ---- */
 
+/* A batch of one point is the point itself. */
+static const double *point_of_batch(dvi__scratch *s, int count, int k, const double *q)
+{
+  if (count == 1) return q;
+  dvi__gather_point(s->n, count, k, q, s->point_q);
+  return s->point_q;
+}
+
 int dvi__potential_has_gradient(const dvi__potential_term *p)
 {
   return p->callbacks.gradient != NULL || p->callbacks.gradient_batch != NULL ||
@@ -57,10 +65,8 @@ dvi_status dvi__potential_value(const dvi__potential_term *p, dvi__scratch *s, i
   const dvi_potential *c = &p->callbacks;
   int returned = 0;
   if (c->value_batch != NULL) returned = c->value_batch(count, t, q, V, c->user);
-  for (int k = 0; c->value_batch == NULL && k < count && returned == 0; k++) {
-    dvi__gather_point(s->n, count, k, q, s->point_q);
-    returned = c->value(t[k], s->point_q, V + k, c->user);
-  }
+  for (int k = 0; c->value_batch == NULL && k < count && returned == 0; k++)
+    returned = c->value(t[k], point_of_batch(s, count, k, q), V + k, c->user);
   return dvi__verdict(returned, 1, count, V, p->name, "value", "");
 }
 
@@ -139,10 +145,8 @@ dvi_status dvi__potential_rate(const dvi__potential_term *p, dvi__scratch *s, in
   const dvi_potential *c = &p->callbacks;
   int returned = 0;
   if (c->rate_batch != NULL) returned = c->rate_batch(count, t, q, V_t, c->user);
-  for (int k = 0; c->rate_batch == NULL && k < count && returned == 0; k++) {
-    dvi__gather_point(s->n, count, k, q, s->point_q);
-    returned = c->rate(t[k], s->point_q, V_t + k, c->user);
-  }
+  for (int k = 0; c->rate_batch == NULL && k < count && returned == 0; k++)
+    returned = c->rate(t[k], point_of_batch(s, count, k, q), V_t + k, c->user);
   return dvi__verdict(returned, 1, count, V_t, p->name, "rate", "");
 }
 

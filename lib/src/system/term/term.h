@@ -106,6 +106,10 @@ dvi_status dvi__general_gradient_of_q(const void *function, int count, const dou
 dvi_status dvi__general_gradient_of_v(const void *function, int count, const double *v, double *L_q,
                                       double *L_v);
 
+/* Return 1 if nothing but potentials depends on the coordinates. Single points then need no
+ * scratch memory but that of differences and Hessians. */
+int dvi__only_potentials(const dvi_system *system);
+
 /* Return 1 if a gradient is differenced from values. */
 int dvi__lacks_gradient(const dvi_system *system);
 
