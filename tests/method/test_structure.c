@@ -10,8 +10,8 @@
 #include "support/runs.h"
 #include "support/suite.h"
 
-/* How many problems of the catalogue each method takes. 21 of them have a mass or a Lagrangian, and
- * no factors. Of these 16 have a constant mass without a vector potential, as verlet wants, and 8
+/* How many problems of the catalogue each method takes. 22 of them have a mass or a Lagrangian, and
+ * no factors. Of these 17 have a constant mass without a vector potential, as verlet wants, and 8
  * have the callbacks for Taylor coefficients that prolongation wants. */
 static const struct {
   const char *name;

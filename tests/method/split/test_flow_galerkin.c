@@ -311,28 +311,6 @@ START_TEST(a_step_takes_no_memory)
 }
 END_TEST
 
-START_TEST(creation_survives_every_failure_of_memory)
-{
-  enum { MOST = 1000 };
-  problem *model = create_problem(kinds[_i], NULL);
-  dvi_integrator *integrator = create_integrator(model->system, "flow-galerkin");
-  dvi_integrator_destroy(&integrator);
-  const long bytes_before = heap_bytes();
-  long successes = 0;
-  for (dvi_status status = DVI_NO_MEMORY; status != DVI_OK && successes < MOST; successes++) {
-    dvi__fail_allocations_after(successes);
-    status = dvi_integrator_create(model->system, "flow-galerkin", &integrator);
-    dvi__fail_allocations_after(-1);
-    ck_assert(status == DVI_OK || status == DVI_NO_MEMORY);
-    ck_assert_int_eq(status == DVI_OK, integrator != NULL);
-  }
-  dvi_integrator_destroy(&integrator);
-  ck_assert(successes > 10 && successes < MOST);
-  ck_assert_int_eq(heap_bytes(), bytes_before);
-  problem_destroy(&model);
-}
-END_TEST
-
 /* ---- states ---- */
 
 START_TEST(a_restored_run_has_the_same_bits)
@@ -352,38 +330,6 @@ START_TEST(a_restored_run_has_the_same_bits)
   }
   dvi_integrator_destroy(&saved);
   dvi_integrator_destroy(&restored);
-  problem_destroy(&model);
-}
-END_TEST
-
-START_TEST(members_of_an_ensemble_are_single_runs)
-{
-  enum { MEMBERS = 3 };
-  problem *model = create_problem("outer-solar-jacobi", NULL);
-  dvi_integrator *single = start_integrator(model, "flow-galerkin");
-  dvi_ensemble *ensemble = create_ensemble(
-      model->system, "flow-galerkin", (dvi_ensemble_options){.members = MEMBERS, .threads = 2});
-  double q[15 * MEMBERS], p[15 * MEMBERS];
-  for (int i = 0; i < 15; i++)
-    for (int k = 0; k < MEMBERS; k++) {
-      q[i * MEMBERS + k] = model->q[i] * (1 + 0.01 * k);
-      p[i * MEMBERS + k] = model->p[i];
-    }
-  ck_assert_int_eq(dvi_ensemble_start(ensemble, 0, q, p), DVI_OK);
-  ck_assert_int_eq(dvi_ensemble_advance(ensemble, 100, 5), DVI_OK);
-  ck_assert_int_eq(dvi_ensemble_state(ensemble, NULL, q, p), DVI_OK);
-  for (int k = 0; k < MEMBERS; k++) {
-    double start[15];
-    for (int i = 0; i < 15; i++) start[i] = model->q[i] * (1 + 0.01 * k);
-    ck_assert_int_eq(dvi_integrator_start(single, 0, start, model->p), DVI_OK);
-    advance(single, 100, 5);
-    for (int i = 0; i < 15; i++) {
-      ck_assert_double_eq(q[i * MEMBERS + k], dvi_integrator_q(single)[i]);
-      ck_assert_double_eq(p[i * MEMBERS + k], dvi_integrator_p(single)[i]);
-    }
-  }
-  dvi_ensemble_destroy(&ensemble);
-  dvi_integrator_destroy(&single);
   problem_destroy(&model);
 }
 END_TEST
@@ -582,9 +528,7 @@ SUITE(flow_galerkin)
   tcase_add_test(tests, the_path_follows_the_flow_inside_of_a_step);
   tcase_add_test(tests, a_small_rest_takes_two_iterations_a_step);
   tcase_add_loop_test(tests, a_step_takes_no_memory, 0, KINDS);
-  tcase_add_loop_test(tests, creation_survives_every_failure_of_memory, 0, KINDS);
   tcase_add_loop_test(tests, a_restored_run_has_the_same_bits, 0, KINDS);
-  tcase_add_test(tests, members_of_an_ensemble_are_single_runs);
   tcase_add_test(tests, a_step_that_is_too_long_leaves_the_state);
   tcase_add_test(tests, a_flow_of_the_program_gives_what_the_built_in_one_gives);
   tcase_add_test(tests, a_flow_that_fails_leaves_the_state);

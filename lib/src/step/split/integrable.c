@@ -146,8 +146,8 @@ static dvi_status integrable_initialise(dvi__integrable *own, dvi_counters *coun
   if (own->dq == NULL || own->dp == NULL || own->z == NULL)
     return dvi__fail(DVI_NO_MEMORY, "no memory");
   DVI_TRY(dvi__system_fast_part(own->system, &own->fast));
-  DVI_TRY(
-      dvi__evaluator_create(own->fast, own->capacity, DVI__GRADIENTS, counters, &own->evaluator));
+  /* what is found once does not count among the evaluations of steps */
+  DVI_TRY(dvi__evaluator_create(own->fast, own->capacity, DVI__GRADIENTS, NULL, &own->evaluator));
   return integrable_choose(own, counters);
 }
 
