@@ -17,6 +17,9 @@ typedef struct nbody {
   double position[NBODY_MAX][3], velocity[NBODY_MAX][3];
 } nbody;
 
+/* The outer solar system, the Sun last. */
+extern const nbody outer_solar_bodies;
+
 /* Allocate, label and fill the problem and create its system, with momenta and angular momenta as
  * symmetries. */
 dvi_status nbody_make(const nbody *bodies, problem *made);

@@ -4,7 +4,7 @@
 #include "entry.h"
 #include "nbody.h"
 
-static const nbody bodies = {
+const nbody outer_solar_bodies = {
     .bodies = 6,
     .dimension = 3,
     .G = 2.95912208286e-4,
@@ -28,7 +28,7 @@ static const nbody bodies = {
 static dvi_status outer_solar_make(const double *setting, problem *made)
 {
   (void)setting;
-  return nbody_make(&bodies, made);
+  return nbody_make(&outer_solar_bodies, made);
 }
 
 /* Quadruple-precision results, recomputed by tests/reference/test_digits. */

@@ -153,6 +153,7 @@ static const place places[] = {{"kepler", NULL, 0.05, 0.1},
                                {"pendulum", NULL, 0.1, 0.5},
                                {"fpu", "ell=3", 0.1, 0.1},
                                {"fpu", "ell=3", 0.03, 0.3},
+                               {"outer-solar-jacobi", NULL, 200, 0.01},
                                {"double-pendulum", NULL, 0.05, 0.3},
                                {"henon-heiles", NULL, 0.2, 0.1},
                                {"chain", "n=8", 0.1, 0.1},
@@ -205,6 +206,8 @@ static const char *const methods[] = {
     "imex",
     "imex:solver=newton",
     "multiscale:fast=0,omega=5",
+    "flow-galerkin",
+    "flow-galerkin:stages=7",
     "shooting",
     "respa:substeps=5",
     "respa:substeps=exact",
@@ -282,7 +285,7 @@ static int pair_is_accepted(int which)
  * few places have. */
 START_TEST(every_place_is_taken_by_the_methods_for_it)
 {
-  check_accepted_cases(&pairs, 247, METHODS, methods);
+  check_accepted_cases(&pairs, 288, METHODS, methods);
 }
 END_TEST
 

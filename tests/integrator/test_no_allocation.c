@@ -60,6 +60,7 @@ static const char *const methods[] = {
     "respa:substeps=exact",
     "trig",
     "multiscale:fast=0,omega=5",
+    "flow-galerkin",
     "composition:order=8,base=verlet",
     "verlet:threads=3",
     "composition:order=6,base=verlet,threads=2",
@@ -97,7 +98,7 @@ static problem *create_place(const place *at, const char *method)
  * have. */
 START_TEST(every_place_is_taken_by_the_methods_for_it)
 {
-  check_accepted_cases(&pairs, 199, METHODS, methods);
+  check_accepted_cases(&pairs, 207, METHODS, methods);
 }
 END_TEST
 

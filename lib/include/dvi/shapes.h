@@ -52,6 +52,37 @@
 #define DVI_SHAPES_MOST 40
 #define DVI_SHAPES_POINTS_MOST 1000
 
+/** The flow of an integrable part H0 of the Hamiltonian H = H0 + H1, as the function space of
+ *  `flow-galerkin`. The paths of a step are z(t) = phi_tau(w(t)), with z = (q,p), the flow phi of
+ *  H0, the time tau from the middle of the step, and polynomials w.
+ *
+ *  phi must be the exact flow of H0 for every tau of either sign, phi_0 = 1 and phi_s(phi_t) =
+ *  phi_{s+t}, and canonical, both to rounding, or the steps are not symplectic. Only H1 is
+ *  sampled, by quadrature. A batch of points is stored component by component: coordinate i of
+ *  point k is q[i*count + k], and tau[k] is the time of point k. No output is an input. Callbacks
+ *  return 0, a positive number if a smaller step may help, or a negative one if nothing will. Their
+ *  results depend on their arguments alone. Equations and sources are in
+ *  docs/methods/split/flow_galerkin.md. */
+typedef struct dvi_flow {
+  /** sizeof(dvi_flow). */
+  size_t size;
+  /** The points (to_q,to_p) = phi_tau(q,p), [n*count] each. Required. */
+  int (*move)(int count, const double *tau, const double *q, const double *p, double *to_q,
+              double *to_p, void *user);
+  /** The covectors (by_q,by_p) = D phi_tau(q,p)^T (lambda_q,lambda_p), [n*count] each: the
+   *  derivatives by q and by p of lambda_q.to_q + lambda_p.to_p. lambda_p is NULL, and stands for
+   *  0, unless there is a `rest`. Required. */
+  int (*pullback)(int count, const double *tau, const double *q, const double *p,
+                  const double *lambda_q, const double *lambda_p, double *by_q, double *by_p,
+                  void *user);
+  /** dH1/dq and dH1/dp [n*count] at times t [count]. Default: H1 is the sum of the potentials that
+   *  are not declared `fast`, and H0 the kinetic energy and the fast potentials. */
+  int (*rest)(int count, const double *t, const double *q, const double *p, double *H_q,
+              double *H_p, void *user);
+  /** Data of the callbacks. Must outlive the integrator. */
+  void *user;
+} dvi_flow;
+
 /** Functions of one step, and their quadrature. Zero means default.
  *
  *  Callbacks return 0, a positive number if a smaller step may help, or a negative one if nothing
@@ -61,7 +92,7 @@ typedef struct dvi_shapes {
   /** Name of the space in specifications, sentences and checkpoints: 1 to 40 letters, digits, '-',
    *  '_' or '.'. */
   const char *name;
-  /** Number of functions f_k, 1 to DVI_SHAPES_MOST. */
+  /** Number of functions f_k, 1 to DVI_SHAPES_MOST, or 0 beside a flow. */
   int functions;
   /** f_k and df_k/dtau [functions] at tau, 0 <= tau <= 1, for a step of length h. The size of a
    *  function, and constants in it, do not matter, because the library makes an orthonormal
@@ -89,6 +120,9 @@ typedef struct dvi_shapes {
   int order;
   /** Data of the callbacks. Must outlive the integrator. */
   void *user;
+  /** A flow in the place of functions, for `flow-galerkin`, copied. The other members but the name
+   *  are then 0. Default: there are functions. */
+  const dvi_flow *flow;
 } dvi_shapes;
 
 #endif

@@ -110,9 +110,9 @@ static dvi_status check_shapes(const dvi__method *method, const dvi_shapes *shap
 {
   if (shapes == NULL || method->takes_shapes) return DVI_OK;
   return dvi__fail(DVI_BAD_OPTION,
-                   "%s: its space is its own, and not the shapes %s; shaped-galerkin takes them, "
-                   "and a composition of it",
-                   method->name, shapes->name);
+                   "%s: its space is its own, and not the shapes %s; %s-galerkin takes them, and a "
+                   "composition of it",
+                   method->name, shapes->name, shapes->flow != NULL ? "flow" : "shaped");
 }
 
 static dvi_status spell_out(dvi__stepper *stepper)

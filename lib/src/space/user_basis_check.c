@@ -14,10 +14,16 @@ dvi_shapes *dvi__shapes_copy(const dvi_shapes *shapes)
 {
   const size_t coordinates = shapes->coordinates != NULL ? (size_t)shapes->coordinate_count : 0,
                name = strlen(shapes->name) + 1;
-  dvi_shapes *copy = dvi__allocate(1, sizeof *copy + coordinates * sizeof(int) + name);
+  dvi_shapes *copy = dvi__allocate(1, sizeof *copy + sizeof(dvi_flow) + coordinates * sizeof(int) +
+                                          name);
   if (copy == NULL) return NULL;
-  int *list = (int *)(void *)(copy + 1);
+  dvi_flow *flow = (dvi_flow *)(void *)(copy + 1);
+  int *list = (int *)(void *)(flow + 1);
   *copy = *shapes;
+  if (shapes->flow != NULL) {
+    *flow = *shapes->flow;
+    copy->flow = flow;
+  }
   if (shapes->coordinates != NULL)
     copy->coordinates = memcpy(list, shapes->coordinates, coordinates * sizeof *list);
   copy->name = memcpy(list + coordinates, shapes->name, name);
@@ -49,10 +55,30 @@ static dvi_status check_shapes_points(const dvi_shapes *s)
                    DVI_SHAPES_POINTS_MOST);
 }
 
+static dvi_status check_shapes_flow(const dvi_shapes *s)
+{
+  const dvi_flow *flow = s->flow;
+  if (flow->size != sizeof *flow)
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "shapes %s: the flow's size is %zu; set it to sizeof(dvi_flow), %zu", s->name,
+                     flow->size, sizeof *flow);
+  if (flow->move == NULL || flow->pullback == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "shapes %s: the flow's callback %s is NULL", s->name,
+                     flow->move == NULL ? "move" : "pullback");
+  if (s->evaluate == NULL && s->functions == 0 && s->point == NULL && s->points == 0 &&
+      s->coordinates == NULL && s->coordinate_count == 0 && s->order == 0 && s->h == 0)
+    return DVI_OK;
+  return dvi__fail(DVI_BAD_ARGUMENT,
+                   "shapes %s: there are a flow and functions, or what belongs to these; give the "
+                   "flow and the name alone",
+                   s->name);
+}
+
 dvi_status dvi__shapes_check(const dvi_shapes *s)
 {
   if (s == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "shapes: the shapes are NULL");
   DVI_TRY(check_shapes_name(s->name));
+  if (s->flow != NULL) return check_shapes_flow(s);
   if (s->evaluate == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "shapes %s: the callback evaluate is NULL", s->name);
   if (s->functions < 1 || s->functions > DVI_SHAPES_MOST)

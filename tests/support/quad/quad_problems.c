@@ -346,6 +346,77 @@ static void outer_solar_prepare(quad_system *system)
       "1.00000597682  0 0 0  0 0 0");
 }
 
+/* Jacobi's vectors of the planets, from the centre of mass of the Sun and the planets inside, and
+ * back to bodies about the centre of mass of all. The Sun is the last body. */
+static void to_jacobi(const quad_system *system, const quad *x, quad *jacobi)
+{
+  const int planets = system->bodies - 1;
+  for (int i = 0; i < 3; i++) {
+    quad inside = system->mass[planets], centre = x[3 * planets + i];
+    for (int body = 0; body < planets; body++) {
+      const quad m = system->mass[body], place = x[3 * body + i];
+      jacobi[3 * body + i] = place - centre;
+      centre += m / (inside + m) * (place - centre);
+      inside += m;
+    }
+  }
+}
+
+static void from_jacobi(const quad_system *system, const quad *jacobi, quad *x)
+{
+  const int planets = system->bodies - 1;
+  for (int i = 0; i < 3; i++) {
+    quad centre = 0, inside = 0;
+    for (int body = 0; body <= planets; body++) inside += system->mass[body];
+    for (int body = planets - 1; body >= 0; body--) {
+      centre -= system->mass[body] / inside * jacobi[3 * body + i];
+      inside -= system->mass[body];
+      x[3 * body + i] = centre + jacobi[3 * body + i];
+    }
+    x[3 * planets + i] = centre;
+  }
+}
+
+static quad jacobi_mass(const quad_system *system, int body)
+{
+  quad inside = system->mass[system->bodies - 1];
+  for (int other = 0; other < body; other++) inside += system->mass[other];
+  return system->mass[body] * inside / (inside + system->mass[body]);
+}
+
+static void jacobi_acceleration(const quad_system *system, const quad *q, const quad *v, quad *a)
+{
+  quad x[QUAD_N_MAX], pull[QUAD_N_MAX];
+  quad_system whole = *system;
+  whole.n = 3 * system->bodies;
+  from_jacobi(system, q, x);
+  gravity_acceleration(&whole, x, v, pull);
+  to_jacobi(system, pull, a);
+}
+
+static void jacobi_momentum(const quad_system *system, const quad *q, const quad *v, quad *p)
+{
+  (void)q;
+  for (int j = 0; j < system->n; j++) p[j] = jacobi_mass(system, j / 3) * v[j];
+}
+
+static void jacobi_velocity(const quad_system *system, const quad *q, const quad *p, quad *v)
+{
+  (void)q;
+  for (int j = 0; j < system->n; j++) v[j] = p[j] / jacobi_mass(system, j / 3);
+}
+
+static void outer_solar_jacobi_prepare(quad_system *system)
+{
+  quad jacobi[QUAD_N_MAX];
+  outer_solar_prepare(system);
+  system->n = 15;
+  to_jacobi(system, system->q, jacobi);
+  memcpy(system->q, jacobi, sizeof system->q);
+  to_jacobi(system, system->v, jacobi);
+  memcpy(system->v, jacobi, sizeof system->v);
+}
+
 static void figure_eight_prepare(quad_system *system)
 {
   gravity_prepare(system, 3, 2,
@@ -456,6 +527,11 @@ static const quad_problem problems[] = {
      NULL,
      NULL},
     {.name = "outer-solar", .prepare = outer_solar_prepare, GRAVITY},
+    {.name = "outer-solar-jacobi",
+     .prepare = outer_solar_jacobi_prepare,
+     .acceleration = jacobi_acceleration,
+     .momentum = jacobi_momentum,
+     .velocity = jacobi_velocity},
     {.name = "figure-eight", .prepare = figure_eight_prepare, GRAVITY},
     {.name = "pythagorean", .prepare = pythagorean_prepare, GRAVITY},
 };

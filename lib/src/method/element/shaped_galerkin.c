@@ -221,6 +221,10 @@ static dvi_status shaped_create(dvi__stepper *self)
   if (self->shapes == NULL)
     return dvi__fail(DVI_BAD_OPTION, "shaped-galerkin: there are no shapes: a program gives them "
                                      "to dvi_integrator_options (dvi/shapes.h)");
+  if (self->shapes->flow != NULL)
+    return dvi__fail(DVI_BAD_OPTION,
+                     "shaped-galerkin: the shapes %s are a flow; flow-galerkin takes it",
+                     self->shapes->name);
   DVI_TRY(shaped_settle(self));
   char *has = DVI_NEW(char, self->system->n);
   if (has == NULL) return dvi__fail(DVI_NO_MEMORY, "shaped-galerkin: no memory");

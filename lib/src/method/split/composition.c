@@ -25,14 +25,15 @@ enum {
   LIE_VERLET,
   SHAPED_GALERKIN,
   NONHOLONOMIC,
+  FLOW_GALERKIN,
   BASES
 };
 
 static const char *base_name(int index)
 {
-  static const char *const name[] = {"verlet",      "boris",           "midpoint",
-                                     "trapezoidal", "galerkin",        "imex",
-                                     "lie-verlet",  "shaped-galerkin", "nonholonomic"};
+  static const char *const name[] = {
+      "verlet", "boris",      "midpoint",        "trapezoidal",  "galerkin",
+      "imex",   "lie-verlet", "shaped-galerkin", "nonholonomic", "flow-galerkin"};
   return index >= 0 && index < BASES ? name[index] : NULL;
 }
 
@@ -40,8 +41,8 @@ static const dvi__key keys[] = {
     {"order", dvi__scheme_name, 0, 0, 0, "4, 6 or 8; default: 4"},
     {"base", base_name, 0, 0, DVI__LEFT_OUT,
      "the symmetric method that is composed: verlet, boris, midpoint, trapezoidal, galerkin, imex, "
-     "lie-verlet, nonholonomic, or a program's shaped-galerkin; all other keys are its own; "
-     "default: verlet, on groups lie-verlet, with holonomic constraints trapezoidal, with "
+     "lie-verlet, nonholonomic, flow-galerkin, or a program's shaped-galerkin; all other keys are "
+     "its own; default: verlet, on groups lie-verlet, with holonomic constraints trapezoidal, with "
      "nonholonomic ones nonholonomic, with a vector potential boris"},
     {0},
 };

@@ -255,14 +255,27 @@ void dvi__modes_range(const dvi__modes *m, double *least, double *most)
 
 /* ---- coordinates and modes ---- */
 
+/* Compute the products y of each column with x. */
+static void modes_multiply_columns(const block *b, const double *columns, const double *x,
+                                   double *y)
+{
+  for (int k = 0; k < b->size; k++) {
+    const double *column = columns + (size_t)k * (size_t)b->size;
+    y[k] = 0;
+    for (int i = 0; i < b->size; i++) y[k] += column[i] * x[b->member[i]];
+  }
+}
+
 void dvi__modes_of_forces(const dvi__modes *m, const double *f, double *y)
 {
-  for (const block *b = m->blocks; b < m->blocks + m->block_count; b++)
-    for (int k = 0; k < b->size; k++, y++) {
-      const double *column = b->X + (size_t)k * (size_t)b->size;
-      *y = 0;
-      for (int i = 0; i < b->size; i++) *y += column[i] * f[b->member[i]];
-    }
+  for (const block *b = m->blocks; b < m->blocks + m->block_count; y += b++->size)
+    modes_multiply_columns(b, b->X, f, y);
+}
+
+void dvi__modes_of_coordinates(const dvi__modes *m, const double *q, double *y)
+{
+  for (const block *b = m->blocks; b < m->blocks + m->block_count; y += b++->size)
+    modes_multiply_columns(b, b->MX, q, y);
 }
 
 /* Add the column of each mode, times y, to x. */

@@ -30,9 +30,10 @@ const double *dvi__modes_squares(const dvi__modes *modes);
 /* The least and the largest frequency of modes that oscillate. Both are 0 if none does. */
 void dvi__modes_range(const dvi__modes *modes, double *least, double *most);
 
-/* Compute y = X^T f of forces, or momenta, f, and q = X y, and f = M X y. All are [n] and
- * distinct. */
+/* Compute y = X^T f of forces, or momenta, f, and y = X^T M q, and q = X y, and f = M X y. All are
+ * [n] and distinct. */
 void dvi__modes_of_forces(const dvi__modes *modes, const double *f, double *y);
+void dvi__modes_of_coordinates(const dvi__modes *modes, const double *q, double *y);
 void dvi__modes_to_coordinates(const dvi__modes *modes, const double *y, double *q);
 void dvi__modes_to_forces(const dvi__modes *modes, const double *y, double *f);
 
