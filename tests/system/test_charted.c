@@ -102,15 +102,27 @@ START_TEST(the_mass_at_the_centre_is_that_of_velocities)
 }
 END_TEST
 
-START_TEST(points_are_found_again)
+/* A point on the way and the start are found again in the charts at the end. */
+START_TEST(paths_are_followed_into_the_charts_at_their_end)
 {
-  double xi[BODY_V], q[BODY_Q], found[BODY_V];
+  double xi[2][BODY_V], q[2][BODY_Q], points[2 * BODY_V], start[BODY_V], found[BODY_Q];
   make_charts(_i);
-  scatter(dvi_system_nq(local()), 1.4, xi);
-  dvi__charted_point(charts, xi, NULL, q, NULL);
-  dvi__charted_inverse(charts, q, found);
-  ck_assert_double_le(distance(dvi_system_nq(local()), xi, found), 1e-14);
-  ck_assert_double_le(dvi_system_distance(model.system, q), 1e-15);
+  const int nx = dvi_system_nq(local());
+  for (int m = 0; m < 2; m++) {
+    scatter(nx, m == 0 ? 0.4 : -0.9, xi[m]);
+    dvi__charted_point(charts, xi[m], NULL, q[m], NULL);
+    for (int i = 0; i < nx; i++) points[2 * i + m] = xi[m][i];
+  }
+  dvi__charted_follow(charts, q[1], xi[1], 2, points);
+  for (int i = 0; i < nx; i++) {
+    start[i] = -points[2 * i + 1];
+    xi[0][i] = points[2 * i] + start[i];
+  }
+  dvi__charted_point(charts, start, NULL, found, NULL);
+  ck_assert_double_le(distance(model.nq, model.q, found), 1e-14);
+  dvi__charted_point(charts, xi[0], NULL, found, NULL);
+  ck_assert_double_le(distance(model.nq, q[0], found), 1e-14);
+  ck_assert_double_le(dvi_system_distance(model.system, found), 1e-15);
 }
 END_TEST
 
@@ -227,7 +239,7 @@ SUITE(charted)
   tcase_add_loop_test(tests, derivatives_are_those_of_the_value, 0, KINDS);
   tcase_add_loop_test(tests, the_value_is_the_systems_own, 0, KINDS);
   tcase_add_loop_test(tests, the_mass_at_the_centre_is_that_of_velocities, 0, KINDS);
-  tcase_add_loop_test(tests, points_are_found_again, 0, BODIES);
+  tcase_add_loop_test(tests, paths_are_followed_into_the_charts_at_their_end, 0, BODIES);
   tcase_add_loop_test(tests, the_centred_jacobian_is_that_of_the_rows, 0, KINDS);
   tcase_add_loop_test(tests, charts_survive_every_failure, 0, KINDS);
   tcase_add_test(tests, beyond_half_a_turn_there_is_no_chart);

@@ -288,6 +288,50 @@ void dvi__chart_inverse(const dvi__chart *chart, const double *y, double *xi)
   }
 }
 
+/* Find log(exp(-end) exp(xi)) by the product of the two quaternions. */
+static void rotation_between(const double *end, const double *xi, double *eta)
+{
+  double a[4], b[4], normal[3];
+  dvi__stumpff_four(0.25 * dvi__dot(end, end), a);
+  dvi__stumpff_four(0.25 * dvi__dot(xi, xi), b);
+  const double back = 0.5 * a[1], on = 0.5 * b[1],
+               real = a[0] * b[0] + back * on * dvi__dot(end, xi);
+  dvi__cross(end, xi, normal);
+  for (int i = 0; i < 3; i++)
+    eta[i] = on * a[0] * xi[i] - back * b[0] * end[i] - back * on * normal[i];
+  const double sine = sqrt(dvi__dot(eta, eta)), sign = real < 0 ? -1 : 1,
+               ratio = sine > 0 ? 2 * atan2(sine, sign * real) / sine : 2;
+  for (int i = 0; i < 3; i++) eta[i] *= sign * ratio;
+}
+
+void dvi__chart_follow(const dvi__chart *chart, const dvi__chart *next, const double *end,
+                       const double *xi, double *eta)
+{
+  double y[3];
+  if (chart->kind == DVI__ROTATION) {
+    rotation_between(end, xi, eta);
+  } else if (chart->kind == DVI__SPHERE) {
+    dvi__chart_place(chart, xi, y);
+    dvi__chart_inverse(next, y, eta);
+  } else {
+    *eta = *xi - *end;
+  }
+}
+
+/* On a great circle this is the direction of the path at its end. */
+void dvi__chart_back(const dvi__chart *chart, const dvi__chart *next, const double *end,
+                     double *eta)
+{
+  double c[4], x[3];
+  for (int i = 0; i < dvi__chart_size(chart->kind); i++) eta[i] = -end[i];
+  if (chart->kind != DVI__SPHERE) return;
+  const double square = dvi__inner(2, end, end);
+  dvi__stumpff_four(square, c);
+  dvi__chart_lift(chart, end, x);
+  for (int i = 0; i < 3; i++) x[i] = square * c[1] * chart->y0[i] - c[0] * x[i];
+  for (int j = 0; j < 2; j++) eta[j] = dvi__dot(next->basis[j], x);
+}
+
 void dvi__chart_enter(const dvi__chart *chart, const double *stored, double *local)
 {
   if (chart->kind != DVI__SPHERE) {

@@ -143,6 +143,13 @@ void dvi__chart_carry_derivatives(const dvi__chart *chart, const double *xi, con
 /* Compute xi of a point y that is nearer than half a turn. */
 void dvi__chart_inverse(const dvi__chart *chart, const double *y, double *xi);
 
+/* Compute eta, the coordinates of y(xi) in the chart `next`, whose centre is y(end), and those of
+ * this chart's centre. Both are right to a few roundings, as guesses need them. */
+void dvi__chart_follow(const dvi__chart *chart, const dvi__chart *next, const double *end,
+                       const double *xi, double *eta);
+void dvi__chart_back(const dvi__chart *chart, const dvi__chart *next, const double *end,
+                     double *eta);
+
 /* Convert at the centre between a stored velocity and the chart's rate, and between a stored
  * momentum and the chart's momentum. */
 void dvi__chart_enter(const dvi__chart *chart, const double *stored, double *local);

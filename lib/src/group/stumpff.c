@@ -9,6 +9,7 @@
 #include "group/stumpff.h"
 
 #include <math.h>
+#include <string.h>
 
 #define NEAR 2.5 /* a quarter turn */
 #define FAR 40.0 /* a full turn */
@@ -98,6 +99,19 @@ void dvi__stumpff_four(double s, double c[4])
     c[1] = c[2] = c[3] = 0;
   } else {
     functions_by_angle(s, c);
+  }
+}
+
+void dvi__stumpff_six(double s, double c[6])
+{
+  double all[9];
+  if (s <= NEAR) {
+    c[5] = sum_stumpff_series(5, 5, s); /* the first term left out is below 1e-17 of the sum */
+    c[4] = sum_stumpff_series(4, 5, s);
+    recur_down(s, 3, 0, c);
+  } else {
+    dvi__stumpff(s, all);
+    memcpy(c, all, 6 * sizeof *c);
   }
 }
 

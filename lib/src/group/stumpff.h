@@ -17,4 +17,8 @@ void dvi__stumpff(double s, double c[9]);
 /* Compute the first four alone, with the same digits. */
 void dvi__stumpff_four(double s, double c[4]);
 
+/* Compute the first six alone. Up to a quarter turn their last digits are those of a shorter
+ * recurrence. */
+void dvi__stumpff_six(double s, double c[6]);
+
 #endif

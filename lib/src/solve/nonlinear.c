@@ -149,12 +149,12 @@ dvi_status dvi__solver_at_floor(dvi__solver *solver, const double *x, int settle
 {
   const size_t unknowns = (size_t)solver->equations.unknowns;
   *at_floor = 0;
-  if (solver->magnitude == NULL || !solver->in_use) return DVI_OK;
+  if (solver->magnitude == NULL) return DVI_OK;
   memset(solver->moved, 0, unknowns * sizeof(double));
-  if (settled) add_moved(solver, solver->residual, solver->moved);
+  if (settled && solver->in_use) add_moved(solver, solver->residual, solver->moved);
   DVI_TRY(dvi__solver_residual(solver, x, solver->residual));
   solver->equations.magnitudes(solver->equations.of, solver->magnitude);
-  add_moved(solver, x, solver->magnitude);
+  if (solver->in_use) add_moved(solver, x, solver->magnitude);
   *at_floor = 1;
   for (size_t i = 0; i < unknowns; i++)
     *at_floor &= fabs(solver->residual[i]) <=

@@ -120,6 +120,27 @@ START_TEST(chains_cost_as_much_as_they_have_links)
 }
 END_TEST
 
+/* Weak springs leave each direction its own block of the Jacobian. One Jacobian serves for many
+ * steps, and nothing sparse is analysed but the mass, once, for the first guess. */
+START_TEST(chains_are_solved_direction_by_direction)
+{
+  direction_chain linked;
+  dvi_counters before, counters;
+  make_direction_chain(50, &linked);
+  dvi_integrator *made = create_integrator(linked.system, "sphere-galerkin:degree=2");
+  ck_assert_int_eq(dvi_integrator_start_velocity(made, 0, linked.q, linked.v), DVI_OK);
+  dvi_integrator_counters(made, &before);
+  advance(made, 0.02, 100);
+  dvi_integrator_counters(made, &counters);
+  ck_assert_int_eq(counters.simplified, 100);
+  ck_assert_int_le(counters.jacobians, 10);
+  ck_assert_int_eq(counters.symbolic, before.symbolic + 1);
+  ck_assert_int_eq(counters.factorizations, before.factorizations + 1);
+  dvi_integrator_destroy(&made);
+  destroy_direction_chain(&linked);
+}
+END_TEST
+
 SUITE(sphere_galerkin)
 {
   tcase_add_test(tests, a_free_direction_keeps_its_momentum);
@@ -127,4 +148,5 @@ SUITE(sphere_galerkin)
   tcase_add_test(tests, directions_stay_directions);
   tcase_add_test(tests, rotations_are_refused_by_name);
   tcase_add_test(tests, chains_cost_as_much_as_they_have_links);
+  tcase_add_test(tests, chains_are_solved_direction_by_direction);
 }

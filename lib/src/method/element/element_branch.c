@@ -181,7 +181,9 @@ static int element_is_folded(const dvi__stepper *self, const dvi__element_place 
     return !dvi__decoupled_is_definite(apart, direction_of_time(at));
   if (apart == NULL && element_is_symmetric(self))
     return !dvi__solver_is_definite(own->solver, direction_of_time(at));
-  const int sign = (apart != NULL ? dvi__decoupled_sign(apart) : dvi__solver_sign(own->solver)) *
+  const int sign = (own->by_blocks  ? (int)own->frozen[DVI__FROZEN_POINT]
+                    : apart != NULL ? dvi__decoupled_sign(apart)
+                                    : dvi__solver_sign(own->solver)) *
                    (unknowns % 2 != 0 ? direction_of_time(at) : 1);
   if (sign > 0 || own->centred || degree % 2 == 0) return sign < 0;
   dvi__action_path(own->action, own->Y, at->h, 0.0, NULL, own->guess);

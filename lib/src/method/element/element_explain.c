@@ -40,7 +40,10 @@ static void explain_systems(dvi__decoupled *systems, dvi__text *text)
 static void explain_simplified(dvi__element *own, dvi__text *text)
 {
   dvi__text_add(text, "simplified Newton's method (");
-  if (own->keeps_whole)
+  if (own->blocks != NULL)
+    dvi__text_add(text, "first by the blocks of what the mass couples, then by the whole Jacobian, "
+                        "both kept over steps");
+  else if (own->keeps_whole)
     dvi__text_add(text, "its Jacobian kept over steps");
   else if (own->decoupled == NULL)
     dvi__text_add(text, "not in this space");

@@ -189,10 +189,18 @@ static dvi_status newton_jacobian(void *of, const double *Y, double *values)
                                  : dvi__action_jacobian(own->action, Y, values);
 }
 
+static dvi_status newton_invert_blocks(const dvi__element *own, const double *Y, double *inverse)
+{
+  own->counters->jacobians++;
+  DVI_TRY(dvi__action_jacobian(own->action, Y, dvi__blocks_jacobian(own->blocks)));
+  return dvi__blocks_invert(own->blocks, inverse);
+}
+
 static dvi_status newton_freeze(void *of, const double *Y)
 {
   const dvi__element *own = of;
   double *point = own->frozen + DVI__FROZEN_POINT;
+  if (own->by_blocks) return own->keeps ? DVI_OK : newton_invert_blocks(own, Y, point);
   if (own->keeps_whole) {
     if (!own->keeps) DVI_TRY(dvi__solver_jacobian(own->solver, Y, point));
     return dvi__solver_take_jacobian(own->solver, point);
@@ -204,7 +212,9 @@ static dvi_status newton_freeze(void *of, const double *Y)
 static void newton_solve_frozen(void *of, double *R)
 {
   const dvi__element *own = of;
-  if (own->keeps_whole)
+  if (own->by_blocks)
+    dvi__blocks_solve(own->blocks, own->frozen + DVI__FROZEN_POINT, R);
+  else if (own->keeps_whole)
     dvi__solver_apply_factor(own->solver, R);
   else
     dvi__decoupled_solve(own->decoupled, R);

@@ -51,7 +51,10 @@ static dvi_status element_row_scale(void *of, double *scale, int *unchanged)
 
 static void element_magnitudes(void *of, double *magnitude)
 {
-  dvi__action_magnitudes(((const dvi__element *)of)->action, magnitude);
+  const dvi__element *own = of;
+  dvi__action_magnitudes(own->action, magnitude);
+  if (own->in_blocks)
+    dvi__blocks_add_moved(own->blocks, own->frozen + DVI__FROZEN_POINT, own->Y, magnitude);
 }
 
 static void element_fixed_point_begin(void *of, const double *Y)
@@ -83,6 +86,8 @@ static void element_count_memory(dvi__stepper *self, const dvi__element *own)
   if (own->keeps_whole)
     self->memory_count += DVI__FROZEN_POINT +
                           (size_t)dvi__pattern_entries(dvi__action_pattern(own->action));
+  if (own->blocks != NULL)
+    self->memory_count += DVI__FROZEN_POINT + dvi__blocks_numbers(own->blocks);
 }
 
 static int element_allocate(dvi__stepper *self, dvi__element *own)
@@ -137,6 +142,18 @@ static dvi_status element_create_solver(dvi__stepper *self, dvi__element *own)
   return dvi__solver_create(&equations, self->counters, &own->solver);
 }
 
+/* Create blocks for the ladder in charts. Forces and unknowns of terms may be as large as what the
+ * blocks hold, and need the whole Jacobian. */
+static dvi_status element_create_blocks(const dvi__stepper *self, dvi__element *own)
+{
+  const int s = dvi__action_space_of(own->action).degree;
+  dvi__blocks_destroy(&own->blocks);
+  if (!own->centred || !dvi__element_is_ladder(own) || own->has_forces ||
+      dvi__action_unknowns(own->action) > self->system->n * s)
+    return DVI_OK;
+  return dvi__blocks_create(&self->system->vv, dvi__action_pattern(own->action), s, &own->blocks);
+}
+
 /* Take account of a new term, or of weights that depend on h. The ladder begins with the whole
  * Jacobian, and ends with the rounding of rows, because roundings would err to one side otherwise.
  * Unknowns of a term are for Newton's method. */
@@ -156,6 +173,7 @@ static dvi_status element_renew_solver(dvi__stepper *self)
   own->Y = NULL;
   /* for the memory's count */
   if (own->keeps_whole) DVI_TRY(dvi__action_prepare_jacobian(own->action));
+  DVI_TRY(element_create_blocks(self, own));
   if (!element_allocate(self, own))
     return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
   return element_create_solver(self, own);
@@ -210,6 +228,7 @@ void dvi__element_destroy(dvi__stepper *self)
   dvi__solver_destroy(&own->solver);
   dvi__element_clear_newton(own);
   dvi__decoupled_destroy(&own->decoupled);
+  dvi__blocks_destroy(&own->blocks);
   dvi__action_destroy(&own->action);
   dvi__release(own->branch);
   dvi__release(own->Y);
@@ -331,14 +350,13 @@ static void update_backoff(dvi__stepper *self, dvi_status status, int steps, int
   self->memory[steps] = *last;
 }
 
-/* Solve with the factor of earlier steps as long as that is as good as a new one. All that this
- * depends on is in the memory, so that a restored run finds the same digits. */
+/* Solve with the factor of earlier steps as long as that is as good as a new one. `frozen` has all
+ * that this depends on, and belongs to the memory, so that a restored run finds the same digits. */
 static dvi_status element_solve_simplified(dvi__stepper *self, const dvi__element_place *at,
-                                           double *Y, dvi__solve_report *report)
+                                           double *frozen, double *Y, dvi__solve_report *report)
 {
   dvi__element *own = self->own;
-  double *frozen = own->frozen = self->memory + dvi__element_forces(self) +
-                                 dvi__action_forces_count(own->action);
+  own->frozen = frozen;
   own->keeps = frozen[DVI__FROZEN_H] == at->h;
   dvi_status status = element_solve_by(self, at, DVI__SIMPLIFIED, Y, report);
   if (status > 0 && own->keeps) {
@@ -350,6 +368,25 @@ static dvi_status element_solve_simplified(dvi__stepper *self, const dvi__elemen
                     report->iterations <= frozen[DVI__FROZEN_ITERATIONS] + MORE_ITERATIONS);
   frozen[DVI__FROZEN_H] = good ? at->h : 0;
   if (!own->keeps) frozen[DVI__FROZEN_ITERATIONS] = report->iterations;
+  return status;
+}
+
+static double *element_frozen_part(const dvi__stepper *self)
+{
+  const dvi__element *own = self->own;
+  return self->memory + dvi__element_forces(self) + dvi__action_forces_count(own->action);
+}
+
+/* Solve by the blocks, whose part is the last one of the memory. */
+static dvi_status element_solve_by_blocks(dvi__stepper *self, const dvi__element_place *at,
+                                          double *Y, dvi__solve_report *report)
+{
+  dvi__element *own = self->own;
+  const size_t numbers = DVI__FROZEN_POINT + dvi__blocks_numbers(own->blocks);
+  own->by_blocks = own->in_blocks = 1;
+  const dvi_status status = element_solve_simplified(
+      self, at, self->memory + self->memory_count - numbers, Y, report);
+  own->in_blocks = 0;
   return status;
 }
 
@@ -373,6 +410,7 @@ static dvi_status element_solve(dvi__stepper *self, const dvi__element_place *at
 {
   dvi__element *own = self->own;
   dvi__element_put(own, at, at->h);
+  own->by_blocks = 0;
   if (own->without_hessian != NULL) return element_solve_without(self, at, Y, report);
   if ((!own->keeps_whole || !dvi__element_is_ladder(own)) &&
       element_is_due(own, DVI__SOLVER_FIXED_POINT, &self->memory[DVI__NEWTON_STEPS])) {
@@ -380,10 +418,18 @@ static dvi_status element_solve(dvi__stepper *self, const dvi__element_place *at
     update_backoff(self, status, DVI__NEWTON_STEPS, DVI__NEWTON_WAIT);
     if (status <= 0) return status;
   }
+  if (own->blocks != NULL &&
+      element_is_due(own, DVI__SOLVER_FIXED_POINT, &self->memory[DVI__NEWTON_STEPS])) {
+    const dvi_status status = element_solve_by_blocks(self, at, Y, report);
+    update_backoff(self, status, DVI__NEWTON_STEPS, DVI__NEWTON_WAIT);
+    if (status <= 0) return status;
+    own->by_blocks = 0;
+  }
   if (dvi__element_is_ladder(own)) DVI_TRY(dvi__element_weigh(own));
   const int can_freeze = own->keeps_whole || (own->decoupled != NULL && !own->is_dear);
   if (can_freeze && element_is_due(own, DVI__SOLVER_SIMPLIFIED, &self->memory[DVI__FULL_STEPS])) {
-    const dvi_status status = element_solve_simplified(self, at, Y, report);
+    const dvi_status status = element_solve_simplified(self, at, element_frozen_part(self), Y,
+                                                       report);
     update_backoff(self, status, DVI__FULL_STEPS, DVI__FULL_WAIT);
     if (status <= 0) return status;
   }

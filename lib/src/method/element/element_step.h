@@ -30,7 +30,8 @@ dvi_status dvi__element_create(dvi__stepper *self, const dvi__action_space *spac
 
 /* Let the paths be those of charts centred at their start, after create. Decoupling the Jacobian,
  * or replacing it by its kinetic part, costs as much accuracy there as the turn of a step. So the
- * ladder begins with the whole Jacobian, kept over steps. */
+ * ladder begins with the Jacobian's blocks of what the mass couples (blocks.h), and then with the
+ * whole one, both kept over steps. */
 dvi_status dvi__element_centre(dvi__stepper *self, const dvi__centring *centring);
 
 /* Let the velocities fulfil the system's nonholonomic constraints, after create with degree 1. */
@@ -43,7 +44,7 @@ dvi_status dvi__element_add_term(dvi__stepper *self, const dvi__row_term *term);
 /* Places of the memory.
  *
  *   DVI__LAST_H        length of the last step, 0 if there was none
- *   DVI__NEWTON_STEPS  number of steps that skip fixed point iteration
+ *   DVI__NEWTON_STEPS  number of steps that skip fixed point iteration, or that by blocks
  *   DVI__FULL_STEPS    number of steps that skip simplified Newton's method
  *   DVI__NEWTON_WAIT   number of steps skipped after the last failure of fixed point iteration,
  *                      0 since its last success
@@ -53,7 +54,8 @@ dvi_status dvi__element_add_term(dvi__stepper *self, const dvi__row_term *term);
  *                      or the momenta at the start of the last step, with which its forces give
  *                      the unknowns (dvi__element_last_path)
  *
- * The forces of the last step and the frozen Jacobian of simplified Newton's method follow. */
+ * The forces of the last step and the frozen Jacobian of simplified Newton's method follow, then
+ * its frozen blocks. */
 enum {
   DVI__LAST_H,
   DVI__NEWTON_STEPS,

@@ -2,6 +2,7 @@
 #ifndef DVI_METHOD_ELEMENT_ELEMENT_STRUCT_H
 #define DVI_METHOD_ELEMENT_ELEMENT_STRUCT_H
 #include "step/element/decoupled.h"
+#include "method/element/blocks.h"
 #include "method/element/element_step.h"
 #include "solve/branch.h"
 
@@ -27,9 +28,9 @@ typedef struct dvi__newton_form {
   int is_frozen;           /* the preconditioner belongs to the current place of the equations */
 } dvi__newton_form;
 
-/* Places of the frozen part of the memory, which are the step's length (0 if nothing is frozen),
- * the number of iterations with the new factor, and the point of the frozen Jacobian, or the
- * Jacobian. */
+/* Places of a frozen part of the memory, which are the step's length (0 if nothing is frozen), the
+ * number of iterations with the new factor, and the point of the frozen Jacobian, or the Jacobian,
+ * or the inverses of its blocks. */
 enum { DVI__FROZEN_H, DVI__FROZEN_ITERATIONS, DVI__FROZEN_POINT };
 
 typedef struct dvi__element {
@@ -43,6 +44,10 @@ typedef struct dvi__element {
   int keeps_whole; /* the whole Jacobian is kept over steps */
   /* nothing in a step by fixed-point iteration needs its path, and its forces give it later */
   int late_paths;
+  /* blocks of the Jacobian, which come first in the ladder, or NULL; the last rung used them, or
+   * uses them now */
+  dvi__blocks *blocks;
+  int by_blocks, in_blocks;
   /* symmetric Jacobians, and real parts of them, are definite for short steps, because the mass is
    * constant and positive */
   int definite;

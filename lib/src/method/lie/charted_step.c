@@ -16,8 +16,7 @@ typedef struct charted_step {
   /* [4 nx] q, p and their compensations in the charts; the arrays below lie behind */
   double *local;
   double *xi, *rate; /* [nx] */
-  double *seen;      /* [nq*(s+1)] points of the path, the start last */
-  double *offset;    /* [unknowns] */
+  double *offset;    /* [nx*s] points of the path */
   double *supply;    /* [1 + symmetries] */
   double power[2];   /* what damping and forces supply to the energy, and its compensation */
 } charted_step;
@@ -28,26 +27,23 @@ static size_t unknowns_of(const charted_step *own)
   return (size_t)dvi__action_unknowns(dvi__element_action(&own->inner));
 }
 
-static size_t degree_of(const charted_step *own)
+static int degree_of(const charted_step *own)
 {
-  return (size_t)dvi__action_space_of(dvi__element_action(&own->inner)).degree;
+  return dvi__action_space_of(dvi__element_action(&own->inner)).degree;
 }
 
 /* ---- create ---- */
 
 static dvi_status charted_step_allocate(dvi__stepper *self, charted_step *own)
 {
-  const size_t nx = (size_t)self->system->nx, n = (size_t)self->system->n,
-               unknowns = unknowns_of(own);
-  const size_t seen = n * (degree_of(own) + 1);
-  self->memory_count = own->inner.memory_count + unknowns;
-  own->local = DVI_NEW(double, 6 * nx + seen + unknowns + 1 + (size_t)self->system->symmetry_count);
+  const size_t nx = (size_t)self->system->nx, points = nx * (size_t)degree_of(own);
+  self->memory_count = own->inner.memory_count + unknowns_of(own);
+  own->local = DVI_NEW(double, 6 * nx + points + 1 + (size_t)self->system->symmetry_count);
   if (own->local == NULL) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
   own->xi = own->local + 4 * nx;
   own->rate = own->xi + nx;
-  own->seen = own->rate + nx;
-  own->offset = own->seen + seen;
-  own->supply = own->offset + unknowns;
+  own->offset = own->rate + nx;
+  own->supply = own->offset + points;
   return DVI_OK;
 }
 
@@ -99,30 +95,6 @@ void dvi__charted_step_destroy(dvi__stepper *self)
 }
 
 /* ---- the step ---- */
-
-/* Evaluate points of the path in the stored coordinates before the chart is left. */
-static void look_back(const charted_step *own, size_t n, const double *path)
-{
-  const dvi__action *action = dvi__element_action(&own->inner);
-  const double *tau = dvi__action_fit_points(action);
-  const size_t s = degree_of(own);
-  for (size_t m = 0; m < s; m++) {
-    dvi__action_path(action, path, 1.0, tau[m], own->xi, NULL);
-    dvi__charted_point(own->charted, own->xi, NULL, own->seen + m * n, NULL);
-  }
-}
-
-/* Express the same path in the chart at its end, where the next guess continues it. */
-static void turn_path(const charted_step *own, size_t n, double *path)
-{
-  const size_t nx = (size_t)dvi__charted_system(own->charted)->n, s = degree_of(own);
-  dvi__charted_inverse(own->charted, own->seen + s * n, own->rate);
-  for (size_t m = 0; m < s; m++) {
-    dvi__charted_inverse(own->charted, own->seen + m * n, own->xi);
-    for (size_t i = 0; i < nx; i++) own->offset[i * s + m] = own->xi[i] - own->rate[i];
-  }
-  dvi__action_fit(dvi__element_action(&own->inner), own->offset, path);
-}
 
 /* Solve the step in the charts at the state. */
 static dvi_status charted_step_solve(dvi__stepper *self, const dvi__state *state, double h,
@@ -177,13 +149,12 @@ static dvi_status add_supplies(const dvi__stepper *self, const double *path, dou
 dvi_status dvi__charted_step(dvi__stepper *self, dvi__state *state, double h)
 {
   const charted_step *own = self->own;
-  const size_t n = (size_t)self->system->n, unknowns = unknowns_of(own);
+  const dvi__action *action = dvi__element_action(&own->inner);
+  const size_t unknowns = unknowns_of(own);
   double *path = self->memory + DVI__LAST_Y, *own_path = self->memory + own->inner.memory_count;
   dvi__state local;
   DVI_TRY(charted_step_solve(self, state, h, &local));
   memcpy(own_path, path, unknowns * sizeof(double));
-  memcpy(own->seen + n * degree_of(own), state->q, n * sizeof(double));
-  look_back(own, n, own_path);
   if (state->supplied != NULL) DVI_TRY(add_supplies(self, own_path, h, state));
   dvi__charted_arrive(own->charted,
                       &(dvi__phase){.q = local.q,
@@ -194,8 +165,10 @@ dvi_status dvi__charted_step(dvi__stepper *self, dvi__state *state, double h)
                                     .p = state->p,
                                     .q_compensation = state->q_compensation,
                                     .p_compensation = state->p_compensation});
-  dvi__charted_centre(own->charted, state->q);
-  turn_path(own, n, path);
+  /* The next guess continues the same path in the charts at its end. */
+  dvi__action_at_fit_points(action, own_path, own->offset);
+  dvi__charted_follow(own->charted, state->q, local.q, degree_of(own), own->offset);
+  dvi__action_fit(action, own->offset, path);
   state->t = local.t;
   state->t_compensation = local.t_compensation;
   return DVI_OK;

@@ -177,9 +177,11 @@ void dvi__action_straight(const dvi__action *action, const double *v, double *Y)
  * arrays may not alias. */
 void dvi__action_continue(dvi__action *action, double ratio, const double *last, double *Y);
 
-/* Give the s fitting points in (0,1], and fit Y to offsets q - q0 at them, stored as [i*s + point].
+/* Give the s fitting points in (0,1], the last of which is 1. Evaluate offsets of the path there,
+ * and fit Y to offsets q - q0 at them, stored as [i*s + point].
  * The arrays may alias. */
 const double *dvi__action_fit_points(const dvi__action *action);
+void dvi__action_at_fit_points(const dvi__action *action, const double *Y, double *offset);
 void dvi__action_fit(const dvi__action *action, const double *offset, double *Y);
 
 /* Give the typical size of each row per unit of an unknown, for scaling norms, which is

@@ -38,8 +38,9 @@ struct dvi__action {
   double *end;                           /* [s] psi_k(1) */
   double *stiffness, *stiffness_inverse; /* [s*s] K_kl = sum_j b_j psi_k' psi_l' */
   double *fit_point, *fit, *straight;    /* [s], [s*s] rows, [s] */
-  dvi__shifts shift;                     /* continuation of paths, [s*path_lanes] by columns */
-  double *shift_rows;                    /* [s*s] work */
+  double *at_fit;     /* [s*path_lanes] psi_k at the fitting points, by columns */
+  dvi__shifts shift;  /* continuation of paths, [s*path_lanes] by columns */
+  double *shift_rows; /* [s*s] work */
   /* Continuation of numbers at the nodes (continuation.c). NULL if none are continued. */
   int fit_terms;
   long double *fit_factor, *fit_nodes; /* [terms*terms] C and [r*terms] W_k, in one block */

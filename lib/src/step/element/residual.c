@@ -203,6 +203,11 @@ const double *dvi__action_fit_points(const dvi__action *a)
   return a->fit_point;
 }
 
+void dvi__action_at_fit_points(const dvi__action *a, const double *Y, double *offset)
+{
+  dvi__lanes_product(a->n, a->s, a->path_lanes, a->s, a->at_fit, Y, offset);
+}
+
 void dvi__action_fit(const dvi__action *a, const double *offset, double *Y)
 {
   const size_t s = (size_t)a->s;

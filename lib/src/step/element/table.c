@@ -26,8 +26,9 @@ static int tables_allocate(dvi__action *a)
   a->stiffness = DVI_NEW(double, s *s);
   a->stiffness_inverse = DVI_NEW(double, s *s);
   a->fit_point = DVI_NEW(double, s);
-  a->fit = DVI_NEW(double, s *s);
+  a->fit = DVI_NEW(double, s *(s + path_lanes));
   a->straight = DVI_NEW(double, s);
+  a->at_fit = a->fit != NULL ? a->fit + s * s : NULL;
   a->shift.table = DVI_NEW(double, DVI__SHIFTS *s *path_lanes);
   a->shift_rows = DVI_NEW(double, s *s);
   a->bar_row = DVI_NEW(double, r *path_lanes);
@@ -117,11 +118,15 @@ static void fill_stiffness(dvi__action *a)
 /* Fit paths at the right Radau nodes, which are well spread and include the end. */
 static dvi_status fill_fit_table(dvi__action *a)
 {
-  double weight[DVI_QUADRATURE_MAX];
+  double weight[DVI_QUADRATURE_MAX], psi[DVI_DEGREE_MAX], dpsi[DVI_DEGREE_MAX];
   DVI_TRY(dvi_quadrature(DVI_RADAU_RIGHT, a->s, a->fit_point, weight));
   dvi__trial_fit(a->space.basis, a->s, a->s, a->fit_point, a->fit);
   for (int k = 0; k < a->s; k++)
     for (int m = 0; m < a->s; m++) a->straight[k] += a->fit[k * a->s + m] * a->fit_point[m];
+  for (int m = 0; m < a->s; m++) {
+    dvi__trial_in(&a->trial, a->fit_point[m], psi, NULL, dpsi);
+    for (int k = 0; k < a->s; k++) a->at_fit[k * a->path_lanes + m] = psi[k];
+  }
   return DVI_OK;
 }
 

@@ -14,7 +14,9 @@ static dvi_status make_charted_system(dvi__charted *x, dvi_holonomic *rows)
   const int reduced = x->reduced.bodies != NULL;
   const dvi_lagrangian lagrangian = {
       .value_batch = reduced ? dvi__reduced_value : dvi__charted_value,
-      .gradient_batch = reduced ? dvi__reduced_gradient : dvi__charted_gradient,
+      .gradient_batch = reduced              ? dvi__reduced_gradient
+                        : x->inertia != NULL ? dvi__charted_gradient_apart
+                                             : dvi__charted_gradient,
       .hessian_batch = reduced ? dvi__reduced_hessian : dvi__charted_hessian,
       .qq = {x->qq.start, x->qq.row},
       .qv = {x->qv.start, x->qv.row},
@@ -75,6 +77,7 @@ static dvi_status charted_fill(dvi__charted *x, const dvi_system *system, int re
   DVI_TRY(charted_allocate(x));
   DVI_TRY(dvi__evaluator_create(system, DVI__GROUP, DVI__HESSIANS, counters, &x->evaluator));
   if (reduced) DVI_TRY(dvi__reduced_create(system, &x->reduced));
+  if (!reduced) DVI_TRY(dvi__charted_find_apart(x));
   DVI_TRY(dvi__charted_make_patterns(x));
   if (reduced) DVI_TRY(dvi__reduced_place(x));
   return declare_charted_system(x);
@@ -102,13 +105,13 @@ void dvi__charted_destroy(dvi__charted **charted)
   dvi__reduced_clear(&x->reduced);
   dvi__charted_clear_rows(x);
   dvi__charted_clear_force(x);
-  void *const own[] = {x->functions,  x->chart,      x->slot,       x->slot_of_x, x->t,
-                       x->y,          x->rate,       x->L_y,        x->w,         x->L_yy,
-                       x->T,          x->S,          x->curved,     x->mixed,     x->in_qq,
-                       x->mass_in_qq, x->mass_in_qv, x->mass_in_vv, x->own_in_qq, x->own_in_qv,
-                       x->own_in_vv,  x->coupled_in, x->W,          x->end,       x->moment,
-                       x->impulse,    x->turned_T,   x->turned_S,   x->C_q1,      x->C_qq,
-                       x->C_qv,       x->kick,       x->first,      x->width};
+  void *const own[] = {
+      x->functions, x->chart,     x->slot,      x->slot_of_x,  x->t,          x->y,
+      x->rate,      x->L_y,       x->w,         x->L_yy,       x->T,          x->S,
+      x->curved,    x->mixed,     x->in_qq,     x->mass_in_qq, x->mass_in_qv, x->mass_in_vv,
+      x->own_in_qq, x->own_in_qv, x->own_in_vv, x->coupled_in, x->W,          x->end,
+      x->moment,    x->impulse,   x->turned_T,  x->turned_S,   x->C_q1,       x->C_qq,
+      x->C_qv,      x->kick,      x->first,     x->width,      x->inertia,    x->stumpff};
   for (size_t i = 0; i < sizeof own / sizeof *own; i++) dvi__release(own[i]);
   dvi__release(x);
   *charted = NULL;
@@ -172,10 +175,31 @@ void dvi__charted_point(const dvi__charted *x, const double *xi, const double *r
   }
 }
 
-void dvi__charted_inverse(const dvi__charted *x, const double *q, double *xi)
+/* Do so for one slot, whose points begin at its first coordinate. */
+static void follow_slot(const dvi__chart *chart, const dvi__chart *next, const double *end, int s,
+                        double *points)
 {
-  for (int c = 0; c < x->base->slot_count; c++)
-    dvi__chart_inverse(&x->chart[c], q + x->base->slots[c].q, xi + x->base->slots[c].x);
+  const int size = dvi__chart_size(chart->kind);
+  double start[DVI__CHART_SIZE];
+  dvi__chart_back(chart, next, end, start);
+  for (int m = 0; m < s; m++) {
+    double xi[DVI__CHART_SIZE], eta[DVI__CHART_SIZE] = {0};
+    for (int i = 0; i < size; i++) xi[i] = points[i * s + m];
+    if (m < s - 1) dvi__chart_follow(chart, next, end, xi, eta);
+    for (int i = 0; i < size; i++) points[i * s + m] = eta[i] - start[i];
+  }
+}
+
+void dvi__charted_follow(dvi__charted *x, const double *q, const double *end, int s, double *points)
+{
+  for (int c = 0; c < x->base->slot_count; c++) {
+    const dvi__factor_slot *slot = &x->base->slots[c];
+    dvi__chart next;
+    dvi__chart_centre(slot->kind, q + slot->q, &next);
+    follow_slot(&x->chart[c], &next, end + slot->x, s, points + (size_t)slot->x * (size_t)s);
+    x->chart[c] = next;
+  }
+  x->failure = DVI_OK;
 }
 
 dvi_status dvi__charted_too_large(double turned)

@@ -61,8 +61,11 @@ void dvi__charted_point(const dvi__charted *charted, const double *xi, const dou
 dvi_status dvi__charted_supply(dvi__charted *charted, double t, const double *xi,
                                const double *rate, double weight, double *supply);
 
-/* Compute xi [nx] of a point q [nq]. */
-void dvi__charted_inverse(const dvi__charted *charted, const double *q, double *xi);
+/* Centre the charts at the end q [nq] of a path from their centre, `end` [nx] in them. `points`
+ * [nx*s] are points of the path, coordinate i of point m at i*s + m and the last one its end. They
+ * become offsets from the path's start in the new charts. */
+void dvi__charted_follow(dvi__charted *charted, const double *q, const double *end, int s,
+                         double *points);
 
 /* Factor the matrix of index 1 of holonomic constraints, with the mass and phi_xi at a point,
  * for an evaluator of states. Then solve G M^-1 G^T lambda = r in place, lambda [rows]. *moved

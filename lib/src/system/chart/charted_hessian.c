@@ -48,6 +48,7 @@ static void add_slot_product(const dvi__charted *x, const dvi__factor_slot *slot
   for (int j = slot->q; j < slot->q + dvi__chart_stored(slot->kind); j++)
     for (int e = vv->start[j]; e < vv->start[j + 1]; e++) {
       const int i = vv->row[e];
+      if (x->base->mass_values[e] == 0) continue;
       const dvi__factor_slot *row = &x->base->slots[x->slot[i]];
       const double *from = dvi__charted_tangents_of(row, left, i),
                    *to = dvi__charted_tangents_of(slot, right, j);
@@ -71,17 +72,19 @@ void dvi__charted_add_mass_product(const dvi__charted *x, const dvi__place *in, 
     add_slot_product(x, &x->base->slots[c], in, left, right, count, k, values);
 }
 
-/* Add left^T L_yy T to the blocks of qq. */
+/* Add left^T L_yy T to the blocks of qq. A user's Hessian without a pattern is nearly all zeros. */
 void dvi__charted_add_potentials(const dvi__charted *x, int group, int in_group, const double *left,
                                  size_t count, size_t k, double *L_qq)
 {
   const dvi__pattern *qq = &x->base->qq;
   for (int j = 0; j < x->base->n; j++)
     for (int e = qq->start[j]; e < qq->start[j + 1]; e++) {
+      const double entry = x->L_yy[e * group + in_group];
+      if (entry == 0) continue;
       const dvi__factor_slot *row = &x->base->slots[x->slot[qq->row[e]]],
                              *column = &x->base->slots[x->slot[j]];
       dvi__charted_add_entry(&x->in_qq[e], dvi__chart_size(row->kind),
-                             dvi__chart_size(column->kind), x->L_yy[e * group + in_group],
+                             dvi__chart_size(column->kind), entry,
                              dvi__charted_tangents_of(row, left, qq->row[e]),
                              dvi__charted_tangents_of(column, x->T, j), count, k, L_qq);
     }

@@ -57,6 +57,9 @@ struct dvi__charted {
   /* Parts of a Lagrangian without potentials that the group leaves invariant (charted_reduced.c).
    * reduced.bodies is NULL for other Lagrangians. */
   dvi__reduced reduced;
+  /* Masses of factors that it does not couple [slots*9], and Stumpff's functions at a group's
+   * points (charted_apart.c). NULL if the mass couples factors. */
+  double *inertia, *stumpff;
   /* Constraints [base's count], and work at one point: y, dy/dxi, gradients, Hessian, gradient of
    * phi.w, numbers of dvi__holonomic_at. */
   dvi__charted_rows *rows;
@@ -147,6 +150,13 @@ int dvi__reduced_gradient(int count, const double *t, const double *xi, const do
 int dvi__reduced_hessian(int count, const double *t, const double *xi, const double *rate,
                          double *L_qq, double *L_qv, double *L_vv, void *user);
 dvi_status dvi__reduced_place(dvi__charted *charted);
+
+/* Read the masses if the mass couples no two factors. */
+dvi_status dvi__charted_find_apart(dvi__charted *charted);
+
+/* The callback of the new system for such masses. */
+int dvi__charted_gradient_apart(int count, const double *t, const double *xi, const double *rate,
+                                double *L_xi, double *L_rate, void *user);
 
 /* Compute the change of a body's angular momentum on a path, in the frame of the centre. A moving x
  * with momentum changes the angular one by Ad*. */
