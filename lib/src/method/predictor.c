@@ -4,10 +4,10 @@
 #include <string.h>
 
 /* Differences that are kept. More of them would amplify roundings. */
-enum { DIFFERENCES = 3 };
+enum { DIFFERENCES = 5 };
 
 /* The memory holds the length of the steps, the number of known differences, that of those in use,
- * and the differences of orders 0, 1 and 2 [unknowns]. */
+ * and the differences of orders 0 to 4 [unknowns] each. */
 enum { LENGTH, KNOWN, USED, FIRST };
 
 size_t dvi__predictor_memory(size_t unknowns)

@@ -8,6 +8,7 @@
 #include "core/status.h"
 #include "num/factor.h"
 #include "num/finite.h"
+#include "num/simd/wide.h"
 
 /* Sizes at which the kinds are equally fast, measured with Debian's reference LAPACK and KLU 5.12
  * on one x86-64 core, medians, one factorisation with one or five solves.
@@ -257,6 +258,33 @@ static inline void linear_equilibrate(const dvi__linear *linear, const int parts
   }
 }
 
+/* The same for a full matrix of real numbers, whose rows are lanes. */
+WIDE static void equilibrate_full(int n, const double *restrict values, double *restrict rows,
+                                  double *restrict columns, double *restrict scaled)
+{
+  enum { LANES = 4 };
+  for (int i = 0; i < n; i++) rows[i] = 0;
+  for (int j = 0; j < n; j++)
+    for (int i = 0; i < n; i++) rows[i] = larger_of_two(rows[i], fabs(values[j * n + i]));
+  invert_scales(n, rows);
+  for (int j = 0; j < n; j++, values += n, scaled += n) {
+    double most[LANES] = {0};
+    int i = 0;
+    for (int k = 0; k < n; k++) scaled[k] = values[k] * rows[k];
+    for (; i + LANES <= n; i += LANES)
+      for (int k = 0; k < LANES; k++) most[k] = larger_of_two(most[k], fabs(scaled[i + k]));
+    for (; i < n; i++) most[0] = larger_of_two(most[0], fabs(scaled[i]));
+    columns[j] = invert_scale(
+        larger_of_two(larger_of_two(most[0], most[1]), larger_of_two(most[2], most[3])));
+    for (int k = 0; k < n; k++) scaled[k] *= columns[j];
+  }
+}
+
+static int is_full(const dvi__pattern *pattern)
+{
+  return pattern->start[pattern->columns] == (int64_t)pattern->columns * pattern->columns;
+}
+
 static dvi_status linear_check_finite(const dvi__linear *linear, const double *values)
 {
   const size_t entries = (size_t)dvi__pattern_entries(linear->form.pattern);
@@ -274,10 +302,13 @@ dvi_status dvi__linear_factor(dvi__linear *linear, const double *values)
   if (linear->counters != NULL && is_matrix) linear->counters->factorizations++;
   const double *factored = values;
   if (has_scales(linear)) {
-    if (linear->parts == 1)
-      linear_equilibrate(linear, 1, values);
-    else
+    if (linear->parts == 2)
       linear_equilibrate(linear, 2, values);
+    else if (is_full(linear->form.pattern))
+      equilibrate_full(linear->form.pattern->columns, values, linear->row_scale,
+                       linear->column_scale, linear->scaled);
+    else
+      linear_equilibrate(linear, 1, values);
     factored = linear->scaled;
   }
   return linear->kind->refactor(linear->factor, linear->form.pattern, factored);

@@ -13,7 +13,7 @@ enum { MOST_ITERATIONS = 40 };
  * saves. Where the end of the iteration is foreseen, a new Jacobian of few unknowns costs about as
  * much as MOST_KEPT iterations, less the last one with it. */
 static const double keep_below = 0.05;
-enum { MOST_KEPT = 3 };
+enum { MOST_KEPT = 5 };
 
 /* Newton's corrections shrink fast until rounding noise of the residual, amplified by a stiff
  * Jacobian, dominates. One correction that doubles is a bad sign, and two end the iteration. */

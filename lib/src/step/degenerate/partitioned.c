@@ -8,6 +8,8 @@
 #include "step/joint.h"
 #include "core/memory.h"
 #include "core/status.h"
+#include "num/simd/wide.h"
+#include "num/simd/width.h"
 #include "system/dynamics/one_form.h"
 
 /* The kicks are k0 = before lambda + carried times the last lambda, and k1 = after lambda. Their
@@ -23,6 +25,11 @@ struct dvi__partitioned {
   int n, s, m; /* coordinates, stages, unknowns of a coordinate */
   double a[DVI__STAGES_MOST][DVI__STAGES_MOST], abar[DVI__STAGES_MOST][DVI__STAGES_MOST],
       b[DVI__STAGES_MOST], c[DVI__STAGES_MOST];
+  /* the same by columns, padded with zeros */
+  double a_by_columns[DVI__STAGES_MOST][DVI__STAGES_MOST],
+      abar_by_columns[DVI__STAGES_MOST][DVI__STAGES_MOST];
+  double ratio; /* the lengths of steps for which `shift` continues the velocities, 0 if none */
+  double shift[DVI__STAGES_MOST][DVI__STAGES_MOST];
   kicks kick;
   dvi__pattern joint, pattern; /* joint is the pattern of one block, pattern that of the Jacobian */
   dvi__joint_entry *block;     /* [entries of joint] */
@@ -63,6 +70,11 @@ static dvi_status partitioned_fill_tableau(dvi__partitioned *p, dvi__tableau tab
   for (int i = 0; i < p->s; i++)
     for (int j = 0; j < p->s; j++) partitioned_conjugate(p, i, j, &p->abar[i][j]);
   if (tableau != DVI__GAUSS) rearrange_lobatto(p, tableau);
+  for (int i = 0; i < p->s; i++)
+    for (int j = 0; j < p->s; j++) {
+      p->a_by_columns[j][i] = p->a[i][j];
+      p->abar_by_columns[j][i] = p->abar[i][j];
+    }
   return DVI_OK;
 }
 
@@ -273,16 +285,22 @@ typedef struct entry {
   double B0, H0, B1, H1, A_end;
 } entry;
 
+/* Copy the numbers of an entry at the stages, 0 where it is none. */
+static inline void gather_stages(const dvi__partitioned *p, const double *values, int at,
+                                 double *out)
+{
+  for (int k = 0; k < p->s; k++) out[k] = at >= 0 ? values[at * p->s + k] : 0;
+}
+
 static void partitioned_gather_entry(const dvi__partitioned *p, const dvi__joint_entry *where,
                                      entry *out)
 {
-  for (int k = 0; k < p->s; k++) {
-    out->A[k] = where->vq >= 0 ? p->H_qv[where->vq * p->s + k] : 0;
-    out->B[k] = where->qv >= 0 ? p->H_qv[where->qv * p->s + k] : 0;
-    out->K[k] = where->qq >= 0 ? p->h * p->H_qq[where->qq * p->s + k] : 0;
-    out->M[k] = where->vv >= 0 ? p->H_vv[where->vv * p->s + k] / p->h : 0;
-  }
-  out->B0 = out->H0 = out->B1 = out->H1 = out->A_end = 0;
+  *out = (entry){.B0 = 0};
+  gather_stages(p, p->H_qv, where->vq, out->A);
+  gather_stages(p, p->H_qv, where->qv, out->B);
+  gather_stages(p, p->H_qq, where->qq, out->K);
+  gather_stages(p, p->H_vv, where->vv, out->M);
+  for (int k = 0; k < p->s; k++) out->K[k] *= p->h;
   if (!p->kick.has_multiplier) return;
   out->B0 = partitioned_at(p->qv0, where->qv);
   out->H0 = p->kick.at_mean ? 0.5 * partitioned_at(p->qq0, where->qq) : 0;
@@ -291,25 +309,35 @@ static void partitioned_gather_entry(const dvi__partitioned *p, const dvi__joint
   out->A_end = partitioned_at(p->qv_end, where->vq);
 }
 
-/* Return sum_j w_j K_j a_jl. */
-static double partitioned_impulse(const dvi__partitioned *p, const entry *e, const double *w, int l)
+/* Fill the rows of a block in the column of the increment W_l. The stages are lanes. */
+INLINE void increment_column(const dvi__partitioned *p, const entry *e, int l, const int lanes,
+                             double *column)
 {
-  double sum = 0;
-  for (int j = 0; j < p->s; j++) sum += w[j] * e->K[j] * p->a[j][l];
-  return sum;
+  const double start = p->b[l] * e->H0, *a = p->a_by_columns[l];
+  double rows[DVI__STAGES_MOST], end = 0;
+  for (int k = 0; k < lanes; k++)
+    rows[k] = a[k] * e->A[k] - start - p->abar_by_columns[l][k] * e->B[l];
+  for (int j = 0; j < p->s; j++) {
+    const double impulse = e->K[j] * a[j], *abar = p->abar_by_columns[j];
+    for (int k = 0; k < lanes; k++) rows[k] -= impulse * abar[k];
+    end += impulse * p->b[j];
+  }
+  memcpy(column, rows, (size_t)p->s * sizeof *rows);
+  column[l] += e->M[l] / p->h;
+  if (p->kick.has_multiplier)
+    column[p->s] = start + p->b[l] * e->B[l] + end + p->b[l] * (e->H1 - e->A_end);
 }
 
-/* Fill the rows of a block in the column of the increment W_l. */
-static void increment_column(const dvi__partitioned *p, const entry *e, int l, double *column)
+/* Fill the columns of all increments, which are `step` numbers apart. */
+WIDE static void increment_columns(const dvi__partitioned *p, const entry *e, size_t step,
+                                   double *columns)
 {
-  const double start = p->b[l] * e->H0;
-  for (int k = 0; k < p->s; k++)
-    column[k] = p->a[k][l] * e->A[k] - start - p->abar[k][l] * e->B[l] -
-                partitioned_impulse(p, e, p->abar[k], l);
-  column[l] += e->M[l];
-  if (p->kick.has_multiplier)
-    column[p->s] = start + p->b[l] * e->B[l] + partitioned_impulse(p, e, p->b, l) +
-                   p->b[l] * (e->H1 - e->A_end);
+  enum { HALF = DVI__STAGES_MOST / 2 };
+  for (int l = 0; l < p->s; l++, columns += step)
+    if (p->s <= HALF)
+      increment_column(p, e, l, HALF, columns);
+    else
+      increment_column(p, e, l, DVI__STAGES_MOST, columns);
 }
 
 /* Fill the rows of a block in the column of the multiplier. */
@@ -325,20 +353,19 @@ static void multiplier_column(const dvi__partitioned *p, const entry *e, double 
 
 dvi_status dvi__partitioned_jacobian(dvi__partitioned *p, const double *x, double *values)
 {
-  const int m = p->m;
+  const size_t m = (size_t)p->m;
   partitioned_points(p, x);
   DVI_TRY(dvi__lagrangian_hessian(p->evaluator, p->s, p->t, p->Q, p->V, p->H_qq, p->H_qv, p->H_vv));
   DVI_TRY(hessians_at_ends(p));
   for (int j = 0; j < p->n; j++) {
     const int first = p->joint.start[j], length = p->joint.start[j + 1] - first;
+    const size_t step = (size_t)length * m;
     for (int e = 0; e < length; e++) {
-      entry block = {0};
-      double *columns = values + (size_t)m * (size_t)m * (size_t)first + (size_t)e * (size_t)m;
+      entry block;
+      double *columns = values + m * m * (size_t)first + (size_t)e * m;
       partitioned_gather_entry(p, &p->block[first + e], &block);
-      for (int l = 0; l < p->s; l++)
-        increment_column(p, &block, l, columns + (size_t)l * (size_t)length * (size_t)m);
-      if (p->kick.has_multiplier)
-        multiplier_column(p, &block, columns + (size_t)p->s * (size_t)length * (size_t)m);
+      increment_columns(p, &block, step, columns);
+      if (p->kick.has_multiplier) multiplier_column(p, &block, columns + (size_t)p->s * step);
     }
   }
   return DVI_OK;
@@ -377,14 +404,13 @@ void dvi__partitioned_straight(const dvi__partitioned *p, const double *v, doubl
   }
 }
 
-void dvi__partitioned_continue(const dvi__partitioned *p, double ratio, const double *last,
-                               double *x)
+void dvi__partitioned_continue(dvi__partitioned *p, double ratio, const double *last, double *x)
 {
-  for (int k = 0; k < p->s; k++) {
-    double weight[DVI__STAGES_MOST];
-    dvi__lagrange_weights(p->s, p->c, 1 + ratio * p->c[k], weight);
-    for (int i = 0; i < p->n; i++)
-      x[i * p->m + k] = ratio * partitioned_dot(p->s, weight, last + i * p->m);
+  for (int k = 0; k < p->s && ratio != p->ratio; k++)
+    dvi__lagrange_weights(p->s, p->c, 1 + ratio * p->c[k], p->shift[k]);
+  p->ratio = ratio;
+  for (int i = 0; i < p->n; i++, last += p->m, x += p->m) {
+    for (int k = 0; k < p->s; k++) x[k] = ratio * partitioned_dot(p->s, p->shift[k], last);
+    if (p->kick.has_multiplier) x[p->s] = 0;
   }
-  for (int i = 0; p->kick.has_multiplier && i < p->n; i++) x[i * p->m + p->s] = 0;
 }

@@ -61,7 +61,7 @@ void dvi__partitioned_ends(dvi__partitioned *partitioned, const double *x, doubl
 /* Write x for increments along v [n]. dvi__partitioned_continue continues the stages' velocities of
  * the last step, with ratio = h_next / h_last. The multiplier starts from 0. */
 void dvi__partitioned_straight(const dvi__partitioned *partitioned, const double *v, double *x);
-void dvi__partitioned_continue(const dvi__partitioned *partitioned, double ratio,
-                               const double *last, double *x);
+void dvi__partitioned_continue(dvi__partitioned *partitioned, double ratio, const double *last,
+                               double *x);
 
 #endif
