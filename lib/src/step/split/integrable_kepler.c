@@ -1,7 +1,5 @@
 /* Bodies that move about a fixed centre, each on its own. */
-#include <float.h>
 #include <math.h>
-#include <string.h>
 
 #include "step/split/integrable_struct.h"
 #include "core/memory.h"

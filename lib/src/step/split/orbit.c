@@ -1,5 +1,6 @@
 #include "step/split/orbit.h"
 
+#include <float.h>
 #include <math.h>
 
 #include "step/split/modes.h"
@@ -54,36 +55,71 @@ static double guess_place(const dvi__orbit *o, double tau)
 }
 
 /* Correct by Laguerre's method for polynomials of degree 5, which converges from far away, and to
- * third order. */
+ * third order. Where numbers overflow it is NaN. */
 static double laguerre_step(const dvi__orbit *o, double defect)
 {
   const double bend = o->eta * o->G[0] + (o->mu - o->beta * o->r0) * o->G[1];
-  return -5 * defect / (o->r + sqrt(fabs(16 * o->r * o->r - 20 * defect * bend)));
+  const double part = defect / o->r;
+  return -5 * part / (1 + sqrt(fabs(16 - 20 * part * bend / o->r)));
 }
 
-/* Find s > 0 at tau > 0, from a guess. The time grows with s, so that bisection takes over where a
- * step leaves the bracket or a hyperbola overflows. The last error is about the cube of `near`, in
- * parts of s or of a turn. */
-static void find_place(dvi__orbit *o, double tau, double guess)
+/* A step is near the solution at this part of s, or of a turn. Its error is about the cube. */
+static int is_near(const dvi__orbit *o, double s, double step)
+{
+  const double near = 1e-6;
+  return fabs(step) <= near * s && step * step * fabs(o->beta) <= near * near;
+}
+
+/* Take a near step by the series of G, whose third term is below rounding. */
+static void finish(dvi__orbit *o, double step)
+{
+  const double *G = o->G, half = 0.5 * step * step;
+  const double moved[] = {G[0] - o->beta * (step * G[1] + half * G[0]),
+                          G[1] + (step * G[0] - half * o->beta * G[1]),
+                          G[2] + (step * G[1] + half * G[0]), G[3] + (step * G[2] + half * G[1])};
+  o->s += step;
+  for (int k = 0; k < 4; k++) o->G[k] = moved[k];
+  o->r = o->r0 * moved[0] + o->eta * moved[1] + o->mu * moved[2];
+}
+
+/* Find s > 0 at tau > 0 by a few steps from a guess. The time grows with s, so that there is one
+ * solution. Returns 0 if they do not get near. */
+static int find_near(dvi__orbit *o, double tau, double s)
+{
+  enum { MOST = 4 };
+  for (int iteration = 0; iteration < MOST; iteration++) {
+    const double step = laguerre_step(o, time_at(o, s) - tau);
+    if (is_near(o, s, step)) {
+      finish(o, step);
+      return 1;
+    }
+    s += step;
+    if (!(s > 0 && s <= DBL_MAX)) return 0;
+  }
+  return 0;
+}
+
+/* Find s > 0 at tau > 0 from anywhere. Bisection takes over where a step leaves the bracket or a
+ * hyperbola overflows. */
+static void find_far(dvi__orbit *o, double tau)
 {
   enum { MOST = 200 };
-  const double near = 1e-6, turn = o->beta > 0 ? 1 / sqrt(o->beta) : HUGE_VAL;
   bracket b = bracket_of(o, tau);
-  double s = guess > 0 ? guess : guess_place(o, tau);
+  double s = guess_place(o, tau);
   if (!(s > b.low && s < b.high)) s = isfinite(b.high) ? 0.5 * (b.low + b.high) : tau / o->r0;
   for (int iteration = 0; iteration < MOST; iteration++) {
     const double defect = time_at(o, s) - tau, step = laguerre_step(o, defect);
+    if (is_near(o, s, step)) {
+      finish(o, step);
+      return;
+    }
     if (defect < 0)
       b.low = s;
     else
       b.high = s;
     const int inside = s + step >= b.low && s + step <= b.high;
-    const double next = inside ? s + step : isfinite(b.high) ? 0.5 * (b.low + b.high) : 2 * s;
-    const double moved = fabs(next - s);
-    s = next;
-    if (moved <= (inside ? near : 1e-15) * fmin(s, turn)) break;
+    s = inside ? s + step : isfinite(b.high) ? 0.5 * (b.low + b.high) : 2 * s;
   }
-  (void)time_at(o, s);
 }
 
 void dvi__orbit_place(double mu, int dimension, const double *q, const double *v, double tau,
@@ -97,10 +133,12 @@ void dvi__orbit_place(double mu, int dimension, const double *q, const double *v
   }
   const double r0 = sqrt(square), sign = tau < 0 ? -1 : 1;
   *o = (dvi__orbit){.mu = mu, .r0 = r0, .eta = sign * eta, .beta = 2 * mu / r0 - speed};
-  if (tau != 0 && isfinite(o->beta))
-    find_place(o, fabs(tau), fabs(guess));
-  else
+  const double straight = fabs(tau) / r0;
+  const int has_guess = guess != 0 || straight * straight * fabs(o->beta) < 1;
+  if (tau == 0 || !isfinite(o->beta))
     (void)time_at(o, 0);
+  else if (!has_guess || !find_near(o, fabs(tau), guess != 0 ? fabs(guess) : straight))
+    find_far(o, fabs(tau));
   /* the motion backward is that with -v */
   o->eta = eta;
   o->s *= sign;
@@ -114,22 +152,31 @@ void dvi__orbit_place(double mu, int dimension, const double *q, const double *v
 
 /* ---- the pullback ---- */
 
+/* 1/(2j + 4)! and 1/(2j + 5)!. */
+enum { TERMS = 8 };
+static const double of_4[TERMS] = {1 / 24.0,          1 / 720.0,          1 / 40320.0,
+                                   1 / 3628800.0,     1 / 479001600.0,    1 / 87178291200.0,
+                                   1 / 20922789888e3, 1 / 6402373705728e3};
+static const double of_5[TERMS] = {1 / 120.0,          1 / 5040.0,           1 / 362880.0,
+                                   1 / 39916800.0,     1 / 6227020800.0,     1 / 1307674368e3,
+                                   1 / 355687428096e3, 1 / 121645100408832e3};
+
 /* Compute G_4 and G_5, by their series where the recursion cancels. */
 static void higher_functions(const dvi__orbit *o, double *G_4, double *G_5)
 {
   const double s2 = o->s * o->s, z = o->beta * s2;
-  double c_4 = 1, c_5 = 1;
+  double c_4 = 0, c_5 = 0;
   if (fabs(z) > 1) {
     *G_4 = (0.5 * s2 - o->G[2]) / o->beta;
     *G_5 = (s2 * o->s / 6 - o->G[3]) / o->beta;
     return;
   }
-  for (int j = 9; j > 0; j--) {
-    c_4 = 1 - z / ((2 * j + 3) * (2 * j + 4)) * c_4;
-    c_5 = 1 - z / ((2 * j + 4) * (2 * j + 5)) * c_5;
+  for (int j = TERMS - 1; j >= 0; j--) {
+    c_4 = of_4[j] - z * c_4;
+    c_5 = of_5[j] - z * c_5;
   }
-  *G_4 = s2 * s2 * c_4 / 24;
-  *G_5 = s2 * s2 * o->s * c_5 / 120;
+  *G_4 = s2 * s2 * c_4;
+  *G_5 = s2 * s2 * o->s * c_5;
 }
 
 /* The adjoint of the formulas above, from the last to the first. For a number x, of_x is the
