@@ -78,7 +78,8 @@ static dvi_status solve_at_once(const dvi__stationary *s, const dvi__stationary_
   DVI_TRY(dvi__solve(s->solver, DVI__NEWTON, stationary_size_of(step), 1, 0, s->x, &report));
   step->stepper->counters->newtons++;
   step->stepper->bend = fmax(step->stepper->bend, report.bend);
-  if (report.iterations <= 4 || dvi__branch_is_near(&report)) return DVI_OK;
+  /* more than fast convergence takes, with a foreseen end */
+  if (report.iterations <= 3 || dvi__branch_is_near(&report)) return DVI_OK;
   const dvi__doubt doubt = dvi__branch_is_straight(&report) ? DVI__LINEAR : DVI__DOUBTED;
   if (doubt > step->stepper->doubt) step->stepper->doubt = doubt;
   return DVI_OK;
