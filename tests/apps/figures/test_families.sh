@@ -1,8 +1,8 @@
 #!/bin/sh
 # The table of families beside SUNDIALS' codes, for a few problems and short spans.
 # Usage: test_families.sh DVI
-top=$(cd "$(dirname "$0")/../.." && pwd)
-. "$(dirname "$0")/check.sh"
+top=$(cd "$(dirname "$0")/../../.." && pwd)
+. "$(dirname "$0")/../check.sh"
 families() { DVI=$dvi sh "$top/apps/examples/families.sh" --quick "$@" >out 2>err; }
 
 families --csv rows.csv massless-particle kepler || { fail 'two problems'; cat err; }

@@ -1,8 +1,8 @@
 #!/bin/sh
 # The commands beside the figures of docs/performance.md exist and run. What takes long is cut
 # short: spans, levels, rounds, peers and sizes.  Usage: test_performance.sh DVI
-top=$(cd "$(dirname "$0")/../.." && pwd)
-. "$(dirname "$0")/check.sh"
+top=$(cd "$(dirname "$0")/../../.." && pwd)
+. "$(dirname "$0")/../check.sh"
 page=$top/docs/performance.md
 
 # A command `dvi` that makes its options cheap and keeps a list of what failed.
