@@ -1,4 +1,4 @@
-/* labels: jacobian */
+/* labels: unit */
 /* Steps in transformed time of systems with a constant diagonal mass find the solution of Newton's
  * method without a Jacobian, as long as they contract. */
 #include <float.h>

@@ -12,6 +12,8 @@
 
 static behaviour quiet;
 
+enum { SPACES_MOST = 20 };
+
 static dvi_system *made_system(void)
 {
   static const double masses[SITES] = {1, 2, 0.5, 3, 1.5, 0.7};
@@ -46,6 +48,31 @@ START_TEST(the_coefficients_are_symplectic_to_the_last_bit)
       ck_assert_double_eq(a->fixed_point.node[i] - a->fixed_point.matrix[j * a->lanes + i],
                           a->fixed_point.node[j] - a->fixed_point.matrix[i * a->lanes + j]);
   }
+  dvi__action_destroy(&a);
+  dvi_system_destroy(&system);
+}
+END_TEST
+
+/* Those of a time-transformed element are a_ij and 1 - a_ji: the difference must be exact. Its path
+ * passes through the places that the same numbers make, to the roundings of tables of doubles. */
+START_TEST(the_coefficients_of_transformed_steps_are_symplectic_to_the_last_bit)
+{
+  enum { MOST = SPACES_MOST + 1, LANES_MOST = MOST + 8 };
+  static const dvi_rule rules[] = {DVI_GAUSS, DVI_LOBATTO, DVI_RADAU_LEFT, DVI_CLENSHAW_CURTIS};
+  const int degree = 2 + _i % SPACES_MOST, rule = _i / SPACES_MOST;
+  static double place[MOST * LANES_MOST], momentum[MOST * LANES_MOST], path[MOST * LANES_MOST];
+  dvi_system *system = made_system();
+  dvi__action *a = made_action(system, DVI_LEGENDRE, degree, rules[rule], degree);
+  ck_assert_int_eq(dvi__action_fill_transformed(a, place, momentum, path), DVI_OK);
+  for (int i = 0; i < degree; i++)
+    for (int j = 0; j < degree; j++) {
+      double through = 0;
+      for (int k = 0; k < degree; k++)
+        through += a->psi[k * a->lanes + i] * path[j * a->path_lanes + k];
+      ck_assert(1 - (long double)place[j * a->lanes + i] ==
+                (long double)momentum[i * a->lanes + j]);
+      ck_assert_double_eq_tol(through, place[j * a->lanes + i], 1e-12);
+    }
   dvi__action_destroy(&a);
   dvi_system_destroy(&system);
 }
@@ -110,6 +137,8 @@ SUITE(fixed_point)
 {
   tcase_add_loop_test(tests, the_coefficients_are_symplectic_to_the_last_bit, 0,
                       4 * DVI_DEGREE_MAX);
+  tcase_add_loop_test(tests, the_coefficients_of_transformed_steps_are_symplectic_to_the_last_bit,
+                      0, 4 * SPACES_MOST);
   tcase_add_loop_test(tests, the_fixed_point_solves_the_rows, 0, 8);
   tcase_add_test(tests, a_mass_that_couples_is_left_to_the_rows);
 }
