@@ -10,8 +10,8 @@
 enum { MOST_ITERATIONS = 40 };
 
 /* Ratio of two corrections beyond which a new Jacobian costs less than the iterations that it
- * saves. Where the end of the iteration is foreseen, a new Jacobian of few unknowns costs about as
- * much as MOST_KEPT iterations, less the last one with it. */
+ * saves. Where the end of the iteration is foreseen, the factor is kept for at most MOST_KEPT more
+ * iterations. They cost as much as a new Jacobian of few unknowns and the iterations with it. */
 static const double keep_below = 0.05;
 enum { MOST_KEPT = 5 };
 
