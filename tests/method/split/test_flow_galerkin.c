@@ -254,19 +254,19 @@ END_TEST
 
 /* ---- states ---- */
 
+/* Whatever the restored integrator did before. */
 START_TEST(a_restored_run_has_the_same_bits)
 {
   problem *model = create_problem(kinds[_i], NULL);
   dvi_integrator *saved = start_integrator(model, "flow-galerkin:stages=3"),
                  *restored = start_integrator(model, "flow-galerkin:stages=3");
-  advance(saved, model->h, 5);
-  advance(restored, 0.3 * model->h, 2);
-  ck_assert_int_eq(dvi_integrator_save(saved, path_in_folder("state")), DVI_OK);
-  ck_assert_int_eq(dvi_integrator_restore(restored, path_in_folder("state")), DVI_OK);
-  for (int k = 0; k < 4; k++) {
-    const double h = (k % 2 ? -0.7 : 1) * model->h;
-    advance(saved, h, 2);
-    advance(restored, h, 2);
+  for (int k = 0; k < repeats(40); k++) {
+    advance(saved, model->h, 1);
+    advance(restored, 0.3 * model->h, 1);
+    ck_assert_int_eq(dvi_integrator_save(saved, path_in_folder("state")), DVI_OK);
+    ck_assert_int_eq(dvi_integrator_restore(restored, path_in_folder("state")), DVI_OK);
+    advance(saved, -0.7 * model->h, 1);
+    advance(restored, -0.7 * model->h, 1);
     check_same_state(saved, restored);
   }
   dvi_integrator_destroy(&saved);
