@@ -44,39 +44,41 @@ typedef struct flow_galerkin {
 static dvi_status take_flow_name(dvi__stepper *self)
 {
   char **rest = &self->settings.rest;
-  if (self->shapes == NULL && *rest == NULL) return DVI_OK;
-  if (self->shapes == NULL)
-    return dvi__fail(
-        DVI_BAD_OPTION,
-        "flow-galerkin: '%s' is not possible; it takes stages, and as flow the name of "
-        "the shapes that a program gives (dvi/shapes.h)",
-        *rest);
-  if (self->shapes->flow == NULL)
-    return dvi__fail(DVI_BAD_OPTION,
-                     "flow-galerkin: the shapes %s have no flow; shaped-galerkin takes functions",
-                     self->shapes->name);
   char *wanted = dvi__written("flow=%s", self->shapes->name);
   if (wanted == NULL)
     return dvi__fail(DVI_NO_MEMORY, "flow-galerkin: no memory for its specification");
-  const int same = *rest == NULL || strcmp(*rest, wanted) == 0;
-  if (!same)
-    (void)dvi__fail(DVI_BAD_OPTION,
-                    "flow-galerkin: '%s' is not possible; it takes stages, and as flow the name of "
-                    "its shapes, %s",
-                    *rest, self->shapes->name);
-  if (same) {
-    dvi__release(*rest);
-    *rest = wanted;
-    return DVI_OK;
+  if (*rest != NULL && strcmp(*rest, wanted) != 0) {
+    dvi__release(wanted);
+    return dvi__fail(
+        DVI_BAD_OPTION,
+        "flow-galerkin: '%s' is not possible; it takes stages, and as flow the name of "
+        "its shapes, %s",
+        *rest, self->shapes->name);
   }
-  dvi__release(wanted);
-  return DVI_BAD_OPTION;
+  dvi__release(*rest);
+  *rest = wanted;
+  return DVI_OK;
+}
+
+/* Check what the specification and the program say about the flow. */
+static dvi_status settle_flow(dvi__stepper *self)
+{
+  if (self->shapes != NULL && self->shapes->flow == NULL)
+    return dvi__fail(DVI_BAD_OPTION,
+                     "flow-galerkin: the shapes %s have no flow; shaped-galerkin takes functions",
+                     self->shapes->name);
+  if (self->shapes != NULL) return take_flow_name(self);
+  if (self->settings.rest == NULL) return DVI_OK;
+  return dvi__fail(DVI_BAD_OPTION,
+                   "flow-galerkin: '%s' is not possible; it takes stages, and as flow the name of "
+                   "the shapes that a program gives (dvi/shapes.h)",
+                   self->settings.rest);
 }
 
 static dvi_status flow_galerkin_create(dvi__stepper *self)
 {
   const int stages = self->settings.value[STAGES];
-  DVI_TRY(take_flow_name(self));
+  DVI_TRY(settle_flow(self));
   flow_galerkin *own = self->own = DVI_NEW(flow_galerkin, 1);
   self->order = 2 * stages;
   self->symmetric = 1;

@@ -25,9 +25,8 @@ dvi__integrable *dvi__flow_stages_flow(const dvi__flow_stages *stages);
 /* Return how many numbers dvi__flow_stages_keep writes. */
 size_t dvi__flow_stages_kept(const dvi__flow_stages *stages);
 
-/* Find the stages of a step of length h from t. w0 [2 n] is the start, q before p. `kept` has what
- * the last step left, or zeros. The sum of G [2 n] is added to nothing: see below.
- * DVI_NOT_CONVERGED if H1 is too large for the iteration. */
+/* Find the stages of a step of length h from t, with the start q0 and p0 [n] of w. `kept` has what
+ * the last step left, or zeros. DVI_NOT_CONVERGED if H1 is too large for the iteration. */
 dvi_status dvi__flow_stages_solve(dvi__flow_stages *stages, double t, double h, const double *q0,
                                   const double *p0, const double *kept);
 
