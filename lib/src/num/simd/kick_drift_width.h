@@ -96,24 +96,39 @@ INLINE size_t NAME(last_kick)(const dvi__last_kick *whole, size_t i, const int p
   const dvi__last_kick l = *whole;
   NAME(vector) doubts = {0};
   for (; i + WIDTH <= l.count; i += WIDTH) {
-    NAME(vector) force, p, p_compensation, q, q_compensation;
+    NAME(vector) force, p, p_compensation;
     NAME(load)(l.force + i, &force);
     NAME(load)(l.from.p + i, &p);
     NAME(load)(l.from.p_compensation + i, &p_compensation);
-    NAME(load)(l.from.q + i, &q);
     NAME(kick_by)(l.kick, &force, &p, &p_compensation);
-    doubts += 0 * p + 0 * q;
+    doubts += 0 * p;
     if (!past) {
       NAME(store)(l.to.p + i, &p, WIDTH);
       NAME(store)(l.to.p_compensation + i, &p_compensation, WIDTH);
       continue;
     }
-    NAME(load)(l.from.q_compensation + i, &q_compensation);
-    NAME(store_past)(l.to.q + i, &q, in_pairs);
     NAME(store_past)(l.to.p + i, &p, in_pairs);
-    NAME(store_past)(l.to.q_compensation + i, &q_compensation, in_pairs);
     NAME(store_past)(l.to.p_compensation + i, &p_compensation, in_pairs);
     NAME(store_past)(l.force_to + i, &force, in_pairs);
+  }
+  for (int k = 0; k < WIDTH; k++) *doubt += doubts[k];
+  return i;
+}
+
+/* Look at q, and store it. */
+INLINE size_t NAME(last_q)(const dvi__last_kick *whole, size_t i, const int past,
+                           const int in_pairs, double *doubt)
+{
+  const dvi__last_kick l = *whole;
+  NAME(vector) doubts = {0};
+  for (; i + WIDTH <= l.count; i += WIDTH) {
+    NAME(vector) q, q_compensation;
+    NAME(load)(l.from.q + i, &q);
+    doubts += 0 * q;
+    if (!past) continue;
+    NAME(load)(l.from.q_compensation + i, &q_compensation);
+    NAME(store_past)(l.to.q + i, &q, in_pairs);
+    NAME(store_past)(l.to.q_compensation + i, &q_compensation, in_pairs);
   }
   for (int k = 0; k < WIDTH; k++) *doubt += doubts[k];
   return i;

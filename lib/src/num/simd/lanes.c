@@ -17,7 +17,7 @@ int dvi__lanes_for(int stages)
   return stages <= 2 ? stages : stages <= 4 ? 4 : (stages + 7) / 8 * 8;
 }
 
-enum { FETCH_AHEAD = 2048 }; /* in bytes; half of it is nearly as good */
+enum { FETCH_AHEAD = 1536 }; /* in bytes; half of it is nearly as good */
 
 #define LOOPS "num/simd/lanes_width.h"
 #include "num/simd/each_width.h"
@@ -194,14 +194,19 @@ INLINE void add_scaled(int widest, size_t count, double factor, const double *x,
 INLINE void last_kick_past(int widest, const dvi__last_kick *l, const int past, const int in_pairs,
                            double *doubt)
 {
-  size_t i = 0;
-  if (widest == 8)
+  size_t i = 0, j = 0;
+  if (widest == 8) {
     i = last_kick8(l, i, past, in_pairs, doubt);
-  else if (widest == 4)
+    j = last_q8(l, j, past, in_pairs, doubt);
+  } else if (widest == 4) {
     i = last_kick4(l, i, past, in_pairs, doubt);
-  else
+    j = last_q4(l, j, past, in_pairs, doubt);
+  } else {
     i = last_kick2(l, i, past, in_pairs, doubt);
+    j = last_q2(l, j, past, in_pairs, doubt);
+  }
   (void)last_kick1(l, i, past, in_pairs, doubt);
+  (void)last_q1(l, j, past, in_pairs, doubt);
 }
 
 /* Pairs of numbers are stored past the caches if no pair straddles lines. */
