@@ -180,7 +180,7 @@ static dvi__phase phase_at(const dvi__phase *whole, ptrdiff_t i)
 
 /* Take the operation A_k, k = 0 .. count-1. The second kick of the substep before and the first
  * kick of this one have the same gradient. */
-static void blocking_kick_drift(const part *own, int k, range r)
+static int blocking_kick_drift(const part *own, int k, range r)
 {
   const dvi__blocking *w = own->pass->blocking;
   const dvi__blocking_step *s = &own->pass->step;
@@ -199,7 +199,7 @@ static void blocking_kick_drift(const part *own, int k, range r)
       .far = k > 0                       ? DVI__NEAR
              : own->window.in[0] != NULL ? DVI__FAR_FROM
                                          : DVI__FAR_BOTH};
-  dvi__lanes_kick_drift(&kick_drift);
+  return dvi__lanes_kick_drift(&kick_drift);
 }
 
 WIDE static void add_term(size_t count, const double *restrict term, double *restrict sum)
@@ -207,7 +207,8 @@ WIDE static void add_term(size_t count, const double *restrict term, double *res
   for (size_t i = 0; i < count; i++) sum[i] += term[i];
 }
 
-/* Add the potentials' gradients at q, in the order of the plain operations. */
+/* Add the potentials' gradients at q, in the order of the plain operations. Numbers that are not
+ * finite are found in the kick that follows, before a callback gets any that come of them. */
 static int blocking_gradient(const part *own, double t, const double *q, range r)
 {
   const dvi_system *system = own->pass->blocking->system;
@@ -221,12 +222,6 @@ static int blocking_gradient(const part *own, double t, const double *q, range r
     if (k > 0) add_term(count, own->term, sum);
   }
   return 1;
-}
-
-/* Test the forces of a kick that a drift and other callbacks follow. A last kick tests itself. */
-static int gradient_is_finite(const part *own, range r)
-{
-  return dvi__lanes_all_finite((size_t)(r.last - r.first), own->window.gradient + r.first);
 }
 
 /* Take the last kick, which leaves the new state. */
@@ -262,16 +257,13 @@ static int work_at(const part *own, ptrdiff_t x)
   const dvi__blocking_step *s = &own->pass->step;
   const ptrdiff_t lag = own->pass->blocking->lag;
   range r = range_at(own, x, 0);
-  if (s->gradient == NULL && r.first < r.last &&
-      !(blocking_gradient(own, s->t0, s->from.q, r) && gradient_is_finite(own, r)))
+  if (s->gradient == NULL && r.first < r.last && !blocking_gradient(own, s->t0, s->from.q, r))
     return 0;
   for (int k = 0; k < s->count; k++) {
     r = range_at(own, x, 2 * k * lag);
-    if (r.first < r.last) blocking_kick_drift(own, k, r);
+    if (r.first < r.last && !blocking_kick_drift(own, k, r)) return 0;
     r = range_at(own, x, (2 * k + 1) * lag);
-    if (r.first >= r.last) continue;
-    if (!blocking_gradient(own, s->t[k], own->window.at.q, r)) return 0;
-    if (k < s->count - 1 && !gradient_is_finite(own, r)) return 0;
+    if (r.first < r.last && !blocking_gradient(own, s->t[k], own->window.at.q, r)) return 0;
   }
   return r.first >= r.last || blocking_last_kick(own, r);
 }

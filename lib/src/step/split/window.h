@@ -28,8 +28,9 @@ dvi__window dvi__window_none(const dvi__phase *to, double *gradient);
 void dvi__window_open(dvi__window *window, double *numbers, ptrdiff_t stride, ptrdiff_t length,
                       ptrdiff_t first);
 
-/* Move the window to `first`, at most to its last coordinate. The coordinates before are lost, which
- * the last operation has written to memory. The first `unfinished` ones are written here. */
+/* Move the window to `first`, at most to its last coordinate. The coordinates before are lost. The
+ * last operation has written them to memory, but for the first `unfinished` ones, which are written
+ * here. */
 void dvi__window_slide(dvi__window *window, ptrdiff_t first, ptrdiff_t unfinished);
 
 /* Take in coordinates from memory, `count` from `first` on, which is at most the window's last. */
