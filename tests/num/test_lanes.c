@@ -224,11 +224,15 @@ START_TEST(a_leap_has_the_bits_of_plain_loops)
                                   .from = phase_of(in_place ? &fast : &from),
                                   .to = phase_of(&fast),
                                   .far = (dvi__far)(variant % 3)};
-    dvi__lanes_kick_drift(&kick_drift);
+    ck_assert_int_eq(dvi__lanes_kick_drift(&kick_drift), 1);
     kick_drift.from = phase_of(in_place ? &plain : &from);
     kick_drift.to = phase_of(&plain);
     plain_kick_drift(&kick_drift);
     ck_assert_mem_eq(&fast, &plain, sizeof fast); /* nothing is written behind, either */
+    if (count == 0) continue;
+    kick_drift.from = kick_drift.to = phase_of(&fast);
+    fast.p[count - 1] = variant % 2 ? HUGE_VAL : (double)NAN;
+    ck_assert_int_eq(dvi__lanes_kick_drift(&kick_drift), 0);
   }
 }
 END_TEST

@@ -179,16 +179,16 @@ static dvi__phase verlet_phase_of(const dvi__state *state)
 static void verlet_kick_drift(const dvi__stepper *self, dvi__state *state, double h)
 {
   const verlet *own = self->own;
-  dvi__lanes_kick_drift(&(dvi__kick_drift){.count = (size_t)self->system->n,
-                                           .kicks = 1,
-                                           .kick = {-0.5 * h},
-                                           .drift = h,
-                                           .by = own->by,
-                                           .scalar = own->scalar,
-                                           .mass = self->system->mass_diagonal,
-                                           .force = self->memory,
-                                           .from = verlet_phase_of(state),
-                                           .to = verlet_phase_of(state)});
+  (void)dvi__lanes_kick_drift(&(dvi__kick_drift){.count = (size_t)self->system->n,
+                                                 .kicks = 1,
+                                                 .kick = {-0.5 * h},
+                                                 .drift = h,
+                                                 .by = own->by,
+                                                 .scalar = own->scalar,
+                                                 .mass = self->system->mass_diagonal,
+                                                 .force = self->memory,
+                                                 .from = verlet_phase_of(state),
+                                                 .to = verlet_phase_of(state)});
   dvi__add_compensated(&state->t, &state->t_compensation, h);
 }
 

@@ -76,15 +76,15 @@ static void verlet_lanes_kick_drift(const dvi__stepper *self, dvi__members *m, d
                             .p = m->p + at,
                             .q_compensation = m->q_compensation + at,
                             .p_compensation = m->p_compensation + at};
-    dvi__lanes_kick_drift(&(dvi__kick_drift){.count = count,
-                                             .kicks = 1,
-                                             .kick = {-0.5 * h},
-                                             .drift = h,
-                                             .by = own->by[i],
-                                             .scalar = own->scalar[i],
-                                             .force = m->memory + at,
-                                             .from = row,
-                                             .to = row});
+    (void)dvi__lanes_kick_drift(&(dvi__kick_drift){.count = count,
+                                                   .kicks = 1,
+                                                   .kick = {-0.5 * h},
+                                                   .drift = h,
+                                                   .by = own->by[i],
+                                                   .scalar = own->scalar[i],
+                                                   .force = m->memory + at,
+                                                   .from = row,
+                                                   .to = row});
   }
   for (size_t k = 0; k < count; k++) dvi__add_compensated(m->t + k, m->t_compensation + k, h);
 }

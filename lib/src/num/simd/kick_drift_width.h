@@ -31,11 +31,13 @@ INLINE void NAME(fetch)(const dvi__kick_drift *l, size_t i)
     __builtin_prefetch((const void *)((uintptr_t)(written[k] + i) + FETCH_AHEAD), 1);
 }
 
+/* Only the sign bit of a product of 0 with a finite number may be set. */
 INLINE size_t NAME(kick_drift)(const dvi__kick_drift *whole, size_t i, const int kicks,
-                               const dvi__division by)
+                               const dvi__division by, int64_t *doubt)
 {
   /* a copy, because the compiler cannot know that no store changes it */
   const dvi__kick_drift l = *whole;
+  NAME(mask) doubts = {0};
   for (; i + WIDTH <= l.count; i += WIDTH) {
     NAME(vector) force, p, p_compensation, q, q_compensation, v;
     if (l.far != DVI__NEAR) NAME(fetch)(&l, i);
@@ -45,6 +47,7 @@ INLINE size_t NAME(kick_drift)(const dvi__kick_drift *whole, size_t i, const int
     for (int k = 0; k < kicks; k++) NAME(kick_by)(l.kick[k], &force, &p, &p_compensation);
     NAME(store)(l.to.p + i, &p, WIDTH);
     NAME(store)(l.to.p_compensation + i, &p_compensation, WIDTH);
+    doubts |= (NAME(mask))(0 * p);
     if (by == DVI__BY_ARRAY) NAME(load)(l.mass + i, &v);
     v = by == DVI__BY_ARRAY ? p / v : by == DVI__BY_SCALAR ? p / l.scalar : p * l.scalar;
     v *= l.drift;
@@ -54,6 +57,7 @@ INLINE size_t NAME(kick_drift)(const dvi__kick_drift *whole, size_t i, const int
     NAME(store)(l.to.q + i, &q, WIDTH);
     NAME(store)(l.to.q_compensation + i, &q_compensation, WIDTH);
   }
+  for (int k = 0; k < WIDTH; k++) *doubt |= doubts[k];
   return i;
 }
 
@@ -96,24 +100,39 @@ INLINE size_t NAME(last_kick)(const dvi__last_kick *whole, size_t i, const int p
   const dvi__last_kick l = *whole;
   NAME(vector) doubts = {0};
   for (; i + WIDTH <= l.count; i += WIDTH) {
-    NAME(vector) force, p, p_compensation, q, q_compensation;
+    NAME(vector) force, p, p_compensation;
     NAME(load)(l.force + i, &force);
     NAME(load)(l.from.p + i, &p);
     NAME(load)(l.from.p_compensation + i, &p_compensation);
-    NAME(load)(l.from.q + i, &q);
     NAME(kick_by)(l.kick, &force, &p, &p_compensation);
-    doubts += 0 * p + 0 * q;
+    doubts += 0 * p;
     if (!past) {
       NAME(store)(l.to.p + i, &p, WIDTH);
       NAME(store)(l.to.p_compensation + i, &p_compensation, WIDTH);
       continue;
     }
-    NAME(load)(l.from.q_compensation + i, &q_compensation);
-    NAME(store_past)(l.to.q + i, &q, in_pairs);
     NAME(store_past)(l.to.p + i, &p, in_pairs);
-    NAME(store_past)(l.to.q_compensation + i, &q_compensation, in_pairs);
     NAME(store_past)(l.to.p_compensation + i, &p_compensation, in_pairs);
     NAME(store_past)(l.force_to + i, &force, in_pairs);
+  }
+  for (int k = 0; k < WIDTH; k++) *doubt += doubts[k];
+  return i;
+}
+
+/* Look at q, and store it. */
+INLINE size_t NAME(last_q)(const dvi__last_kick *whole, size_t i, const int past,
+                           const int in_pairs, double *doubt)
+{
+  const dvi__last_kick l = *whole;
+  NAME(vector) doubts = {0};
+  for (; i + WIDTH <= l.count; i += WIDTH) {
+    NAME(vector) q, q_compensation;
+    NAME(load)(l.from.q + i, &q);
+    doubts += 0 * q;
+    if (!past) continue;
+    NAME(load)(l.from.q_compensation + i, &q_compensation);
+    NAME(store_past)(l.to.q + i, &q, in_pairs);
+    NAME(store_past)(l.to.q_compensation + i, &q_compensation, in_pairs);
   }
   for (int k = 0; k < WIDTH; k++) *doubt += doubts[k];
   return i;

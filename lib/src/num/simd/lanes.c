@@ -17,7 +17,7 @@ int dvi__lanes_for(int stages)
   return stages <= 2 ? stages : stages <= 4 ? 4 : (stages + 7) / 8 * 8;
 }
 
-enum { FETCH_AHEAD = 2048 }; /* in bytes; half of it is nearly as good */
+enum { FETCH_AHEAD = 1536 }; /* in bytes; half of it is nearly as good */
 
 /* A fused product gives the rounding error of a product. Where the processor has none, the library
  * function gives the same bits. */
@@ -144,32 +144,32 @@ INLINE double largest(size_t count, const double *x)
   return magnitude;
 }
 
-INLINE void kick_drift_with_kicks(int widest, const dvi__kick_drift *l, const int kicks,
-                                  const dvi__division by)
+INLINE int kick_drift_with_kicks(int widest, const dvi__kick_drift *l, const int kicks,
+                                 const dvi__division by)
 {
+  int64_t doubt = 0;
   size_t i = 0;
   if (widest == 8)
-    i = kick_drift8(l, i, kicks, by);
+    i = kick_drift8(l, i, kicks, by, &doubt);
   else if (widest == 4)
-    i = kick_drift4(l, i, kicks, by);
+    i = kick_drift4(l, i, kicks, by, &doubt);
   else
-    i = kick_drift2(l, i, kicks, by);
-  (void)kick_drift1(l, i, kicks, by);
+    i = kick_drift2(l, i, kicks, by, &doubt);
+  (void)kick_drift1(l, i, kicks, by, &doubt);
+  return (doubt & INT64_MAX) == 0;
 }
 
-INLINE void kick_drift_with_division(int widest, const dvi__kick_drift *l, const dvi__division by)
+INLINE int kick_drift_with_division(int widest, const dvi__kick_drift *l, const dvi__division by)
 {
-  l->kicks == 2 ? kick_drift_with_kicks(widest, l, 2, by) : kick_drift_with_kicks(widest, l, 1, by);
+  return l->kicks == 2 ? kick_drift_with_kicks(widest, l, 2, by)
+                       : kick_drift_with_kicks(widest, l, 1, by);
 }
 
-INLINE void kick_drift(int widest, const dvi__kick_drift *l)
+INLINE int kick_drift(int widest, const dvi__kick_drift *l)
 {
-  if (l->by == DVI__TIMES_SCALAR)
-    kick_drift_with_division(widest, l, DVI__TIMES_SCALAR);
-  else if (l->by == DVI__BY_SCALAR)
-    kick_drift_with_division(widest, l, DVI__BY_SCALAR);
-  else
-    kick_drift_with_division(widest, l, DVI__BY_ARRAY);
+  return l->by == DVI__TIMES_SCALAR ? kick_drift_with_division(widest, l, DVI__TIMES_SCALAR)
+         : l->by == DVI__BY_SCALAR  ? kick_drift_with_division(widest, l, DVI__BY_SCALAR)
+                                    : kick_drift_with_division(widest, l, DVI__BY_ARRAY);
 }
 
 INLINE void add_scaled(int widest, size_t count, double factor, const double *x, double *sum,
@@ -188,14 +188,19 @@ INLINE void add_scaled(int widest, size_t count, double factor, const double *x,
 INLINE void last_kick_past(int widest, const dvi__last_kick *l, const int past, const int in_pairs,
                            double *doubt)
 {
-  size_t i = 0;
-  if (widest == 8)
+  size_t i = 0, j = 0;
+  if (widest == 8) {
     i = last_kick8(l, i, past, in_pairs, doubt);
-  else if (widest == 4)
+    j = last_q8(l, j, past, in_pairs, doubt);
+  } else if (widest == 4) {
     i = last_kick4(l, i, past, in_pairs, doubt);
-  else
+    j = last_q4(l, j, past, in_pairs, doubt);
+  } else {
     i = last_kick2(l, i, past, in_pairs, doubt);
+    j = last_q2(l, j, past, in_pairs, doubt);
+  }
   (void)last_kick1(l, i, past, in_pairs, doubt);
+  (void)last_q1(l, j, past, in_pairs, doubt);
 }
 
 /* Pairs of numbers are stored past the caches if no pair straddles lines. */
@@ -228,7 +233,7 @@ typedef struct level {
                   double *out);
   int (*all_finite)(size_t count, const double *x);
   double (*largest)(size_t count, const double *x);
-  void (*kick_drift)(const dvi__kick_drift *l);
+  int (*kick_drift)(const dvi__kick_drift *l);
   int (*last_kick)(const dvi__last_kick *l);
   void (*add_scaled)(size_t count, double factor, const double *x, double *sum,
                      double *compensation);
@@ -299,9 +304,9 @@ typedef struct level {
   {                                                                                       \
     return largest(count, x);                                                             \
   }                                                                                       \
-  target static void kick_drift_##suffix(const dvi__kick_drift *l)                        \
+  target static int kick_drift_##suffix(const dvi__kick_drift *l)                         \
   {                                                                                       \
-    kick_drift(widest, l);                                                                \
+    return kick_drift(widest, l);                                                         \
   }                                                                                       \
   target static int last_kick_##suffix(const dvi__last_kick *l)                           \
   {                                                                                       \
@@ -432,9 +437,9 @@ double dvi__lanes_largest(size_t count, const double *x)
   return best()->largest(count, x);
 }
 
-void dvi__lanes_kick_drift(const dvi__kick_drift *kick_drift)
+int dvi__lanes_kick_drift(const dvi__kick_drift *kick_drift)
 {
-  best()->kick_drift(kick_drift);
+  return best()->kick_drift(kick_drift);
 }
 
 void dvi__lanes_await_stores(void)

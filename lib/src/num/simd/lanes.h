@@ -100,7 +100,9 @@ typedef struct dvi__kick_drift {
   dvi__far far;
 } dvi__kick_drift;
 
-void dvi__lanes_kick_drift(const dvi__kick_drift *kick_drift);
+/* Take kicks and a drift. Returns 0 if a number of the new p is NaN or Inf, as it is where a number
+ * of the force is. */
+int dvi__lanes_kick_drift(const dvi__kick_drift *kick_drift);
 
 /* The last kick, p <- p + kick force. If `past` is not 0, all five arrays are stored to `to` and
  * `force_to` past the caches. A plain store reads the line first of which it overwrites a number.

@@ -2,28 +2,28 @@
 
 #include <stdatomic.h>
 #include <stddef.h>
-#include <stdint.h>
 #include <string.h>
 
 #include "core/memory.h"
 #include "core/status.h"
 #include "num/simd/wide.h"
 #include "num/team.h"
+#include "step/split/window.h"
 
 /* Lags are multiples of a cache line, so that vectors stay aligned. With blocks of 512 coordinates,
  * and the lags of 17 substeps between nearest neighbours, the window has five arrays of 800
  * numbers, which fits into the first cache. Windows up to WINDOW fit into the second. */
 enum { LINE = 8, BLOCK = 512, WINDOW = 24 * 1024 };
 
-/* A pass reads and writes five arrays, q, p, their compensations, and the gradient. */
-enum { ARRAYS = 5 };
+enum { ARRAYS = DVI__WINDOW_ARRAYS };
 
 /* Chains of so many coordinates leave no cache large enough for the states before and after a step.
  * The operations then work in a window of their own, from which the new state goes to memory past
  * the caches. Lines that a plain store writes would be read first. While a block is computed no
  * memory is read, unless the processor looks ahead to the next block. Blocks are therefore short
- * where a pass computes little. */
-enum { LONG_CHAIN = 400 * 1000, SHORT_BLOCK = 64 };
+ * where a pass computes little, SHORT_BLOCK coordinates for each substep, unless more are in work
+ * behind them. A window has ROOM for some of them, so that it moves more seldom. */
+enum { LONG_CHAIN = 400 * 1000, SHORT_BLOCK = 64, ROOM = 192 };
 
 struct dvi__blocking {
   const dvi_system *system;
@@ -72,12 +72,19 @@ static ptrdiff_t in_work(const dvi__blocking *w, int count)
   return 2 * count * w->lag;
 }
 
+static ptrdiff_t block_of_window(const dvi__blocking *w, int count)
+{
+  const ptrdiff_t work = in_work(w, count),
+                  least = work > SHORT_BLOCK * count ? work : SHORT_BLOCK * count;
+  return w->block < least ? w->block : least;
+}
+
 /* Return the length of the window of such a pass. It holds a block, what is in work, and as much of
- * the right neighbour's. If that is more than a block, there is room to move it more seldom. */
+ * the right neighbour's. What moves with the window is less than the room in front of it. */
 static ptrdiff_t length_of_window(const dvi__blocking *w, int count)
 {
-  const ptrdiff_t work = in_work(w, count), moved = work > w->block ? 4 * work : 2 * work;
-  return (w->block + moved + w->lag + LINE - 1) / LINE * LINE;
+  const ptrdiff_t work = in_work(w, count), kept = work > w->block ? 4 * work : 2 * work;
+  return (block_of_window(w, count) + kept + w->lag + ROOM + LINE - 1) / LINE * LINE;
 }
 
 /* Allocate windows for the passes whose windows fit into a cache. */
@@ -156,12 +163,7 @@ typedef struct part {
   pass *pass;
   ptrdiff_t begin, end, block;
   double *term;
-  /* the window, with coordinates first to last-1 of `length`, or NULL to work in `to` itself */
-  double *window;
-  ptrdiff_t length, first, last;
-  /* where coordinate 0 would be if the window reached that far */
-  dvi__phase at;
-  double *gradient;
+  dvi__window window;
 } part;
 
 typedef struct range {
@@ -178,11 +180,11 @@ static dvi__phase phase_at(const dvi__phase *whole, ptrdiff_t i)
 
 /* Take the operation A_k, k = 0 .. count-1. The second kick of the substep before and the first
  * kick of this one have the same gradient. */
-static void blocking_kick_drift(const part *own, int k, range r)
+static int blocking_kick_drift(const part *own, int k, range r)
 {
   const dvi__blocking *w = own->pass->blocking;
   const dvi__blocking_step *s = &own->pass->step;
-  const double *gradient = k == 0 && s->gradient != NULL ? s->gradient : own->gradient;
+  const double *gradient = k == 0 && s->gradient != NULL ? s->gradient : own->window.gradient;
   const dvi__kick_drift kick_drift = {
       .count = (size_t)(r.last - r.first),
       .kicks = k == 0 ? 1 : 2,
@@ -192,12 +194,12 @@ static void blocking_kick_drift(const part *own, int k, range r)
       .scalar = w->scalar,
       .mass = w->by == DVI__BY_ARRAY ? w->system->mass_diagonal + r.first : NULL,
       .force = gradient + r.first,
-      .from = phase_at(k == 0 ? &s->from : &own->at, r.first),
-      .to = phase_at(&own->at, r.first),
-      .far = k > 0                 ? DVI__NEAR
-             : own->window != NULL ? DVI__FAR_FROM
-                                   : DVI__FAR_BOTH};
-  dvi__lanes_kick_drift(&kick_drift);
+      .from = phase_at(k == 0 ? &s->from : &own->window.at, r.first),
+      .to = phase_at(&own->window.at, r.first),
+      .far = k > 0                       ? DVI__NEAR
+             : own->window.in[0] != NULL ? DVI__FAR_FROM
+                                         : DVI__FAR_BOTH};
+  return dvi__lanes_kick_drift(&kick_drift);
 }
 
 WIDE static void add_term(size_t count, const double *restrict term, double *restrict sum)
@@ -205,11 +207,12 @@ WIDE static void add_term(size_t count, const double *restrict term, double *res
   for (size_t i = 0; i < count; i++) sum[i] += term[i];
 }
 
-/* Add the potentials' gradients at q, in the order of the plain operations. */
+/* Add the potentials' gradients at q, in the order of the plain operations. Numbers that are not
+ * finite are found in the kick that follows, before a callback gets any that come of them. */
 static int blocking_gradient(const part *own, double t, const double *q, range r)
 {
   const dvi_system *system = own->pass->blocking->system;
-  double *sum = own->gradient + r.first;
+  double *sum = own->window.gradient + r.first;
   const size_t count = (size_t)(r.last - r.first);
   for (int k = 0; k < system->potential_count; k++) {
     const dvi_potential *asked = &system->potentials[k].callbacks;
@@ -221,83 +224,17 @@ static int blocking_gradient(const part *own, double t, const double *q, range r
   return 1;
 }
 
-/* Test the forces of a kick that a drift and other callbacks follow. A last kick tests itself. */
-static int gradient_is_finite(const part *own, range r)
-{
-  return dvi__lanes_all_finite((size_t)(r.last - r.first), own->gradient + r.first);
-}
-
 /* Take the last kick, which leaves the new state. */
 static int blocking_last_kick(const part *own, range r)
 {
   const dvi__blocking_step *s = &own->pass->step;
   return dvi__lanes_last_kick(&(dvi__last_kick){.count = (size_t)(r.last - r.first),
                                                 .kick = -0.5 * s->h[s->count - 1],
-                                                .force = own->gradient + r.first,
-                                                .from = phase_at(&own->at, r.first),
+                                                .force = own->window.gradient + r.first,
+                                                .from = phase_at(&own->window.at, r.first),
                                                 .to = phase_at(&s->to, r.first),
                                                 .force_to = s->gradient_to + r.first,
-                                                .past = own->window != NULL});
-}
-
-/* ---- windows ---- */
-
-/* Give the five arrays of the new state, and those of a window. */
-static void arrays_of(const part *own, double *to[ARRAYS], double *in[ARRAYS])
-{
-  const dvi__blocking_step *s = &own->pass->step;
-  double *const arrays[] = {s->to.q, s->to.p, s->to.q_compensation, s->to.p_compensation,
-                            s->gradient_to};
-  for (int k = 0; k < ARRAYS; k++) {
-    to[k] = arrays[k];
-    in[k] = own->window + k * own->pass->blocking->length;
-  }
-}
-
-/* Return where coordinate 0 of an array would be, of which coordinate `first` is at `at`. The
- * operations use no address before the array itself. */
-static double *origin_of(double *at, ptrdiff_t first)
-{
-  return (double *)((uintptr_t)at - (uintptr_t)first * sizeof(double));
-}
-
-/* Let the operations find coordinate `first` at the front of the window. */
-static void place_window(part *own, ptrdiff_t first)
-{
-  double *to[ARRAYS], *in[ARRAYS];
-  arrays_of(own, to, in);
-  for (int k = 0; k < ARRAYS; k++) in[k] = origin_of(in[k], first);
-  own->first = first;
-  own->at = (dvi__phase){.q = in[0], .p = in[1], .q_compensation = in[2], .p_compensation = in[3]};
-  own->gradient = in[4];
-}
-
-/* Move the window. The last kick has written the coordinates before `first` to memory, but for
- * those that the left neighbour continues. */
-static void slide_window(part *own, ptrdiff_t first)
-{
-  double *to[ARRAYS], *in[ARRAYS];
-  const ptrdiff_t done = first - own->first, kept = own->last - first,
-                  behind = (2 * own->pass->step.count - 1) * own->pass->blocking->lag;
-  if (own->window == NULL || done <= 0) return;
-  arrays_of(own, to, in);
-  for (int k = 0; k < ARRAYS; k++) {
-    if (own->first == own->begin && own->begin > 0)
-      memcpy(to[k] + own->first, in[k], (size_t)behind * sizeof(double));
-    memmove(in[k], in[k] + done, (size_t)kept * sizeof(double));
-  }
-  place_window(own, first);
-}
-
-/* Take in what the right neighbour has left of its first coordinates. */
-static void take_neighbours(part *own, ptrdiff_t count)
-{
-  double *to[ARRAYS], *in[ARRAYS];
-  if (own->window == NULL) return;
-  arrays_of(own, to, in);
-  for (int k = 0; k < ARRAYS; k++)
-    memcpy(in[k] + (own->end - own->first), to[k] + own->end, (size_t)count * sizeof(double));
-  own->last = own->end + count;
+                                                .past = own->window.in[0] != NULL});
 }
 
 /* ---- one thread ---- */
@@ -320,16 +257,13 @@ static int work_at(const part *own, ptrdiff_t x)
   const dvi__blocking_step *s = &own->pass->step;
   const ptrdiff_t lag = own->pass->blocking->lag;
   range r = range_at(own, x, 0);
-  if (s->gradient == NULL && r.first < r.last &&
-      !(blocking_gradient(own, s->t0, s->from.q, r) && gradient_is_finite(own, r)))
+  if (s->gradient == NULL && r.first < r.last && !blocking_gradient(own, s->t0, s->from.q, r))
     return 0;
   for (int k = 0; k < s->count; k++) {
     r = range_at(own, x, 2 * k * lag);
-    if (r.first < r.last) blocking_kick_drift(own, k, r);
+    if (r.first < r.last && !blocking_kick_drift(own, k, r)) return 0;
     r = range_at(own, x, (2 * k + 1) * lag);
-    if (r.first >= r.last) continue;
-    if (!blocking_gradient(own, s->t[k], own->at.q, r)) return 0;
-    if (k < s->count - 1 && !gradient_is_finite(own, r)) return 0;
+    if (r.first < r.last && !blocking_gradient(own, s->t[k], own->window.at.q, r)) return 0;
   }
   return r.first >= r.last || blocking_last_kick(own, r);
 }
@@ -360,18 +294,19 @@ static int blocking_run_part(part *own, int member)
                   clear = own->begin + 2 * (behind + w->lag);
   const int is_last = member == own->pass->members - 1;
   const ptrdiff_t last = is_last ? own->end : own->end + behind, end = last + behind;
+  dvi__window *window = &own->window;
   int waits = !is_last, tells = 1, good = 1;
   for (ptrdiff_t x = own->begin; x < end && good; x += own->block) {
-    const int meets = waits && x + own->block + w->lag > own->end;
-    const int is_clear = tells && x >= clear;
-    if (is_clear || meets || x + own->block > own->first + own->length)
-      slide_window(own, x - behind - w->lag);
+    const int meets = waits && x + own->block + w->lag > own->end, is_clear = tells && x >= clear;
+    if (is_clear || meets || x + own->block > window->first + window->length)
+      dvi__window_slide(window, x - behind - w->lag, is_clear && own->begin > 0 ? behind : 0);
     if (is_clear) let_neighbour_begin(own, member);
     tells = tells && !is_clear;
-    if (own->last < own->end) own->last = x + own->block < own->end ? x + own->block : own->end;
+    if (window->last < own->end)
+      window->last = x + own->block < own->end ? x + own->block : own->end;
     if (meets) {
       good = blocking_await_neighbour(own, member + 1);
-      if (good) take_neighbours(own, behind + w->lag);
+      if (good) dvi__window_take(window, own->end, behind + w->lag);
       waits = 0;
     }
     good = good && !atomic_load_explicit(&own->pass->failed, memory_order_relaxed) &&
@@ -396,13 +331,11 @@ static void blocking_take_part(void *user, int member)
               .end = blocking_cut(p, member + 1),
               .block = w->block,
               .term = w->term != NULL ? w->term + member * w->block : NULL,
-              .at = p->step.to,
-              .gradient = p->step.gradient_to};
+              .window = dvi__window_none(&p->step.to, p->step.gradient_to)};
   if (has_windows(w, p->step.count)) {
-    own.window = w->windows + member * ARRAYS * w->length;
-    own.length = length_of_window(w, p->step.count);
-    if (own.block > SHORT_BLOCK * p->step.count) own.block = SHORT_BLOCK * p->step.count;
-    place_window(&own, own.begin);
+    own.block = block_of_window(w, p->step.count);
+    dvi__window_open(&own.window, w->windows + member * ARRAYS * w->length, w->length,
+                     length_of_window(w, p->step.count), own.begin);
   }
   if (!blocking_run_part(&own, member)) atomic_store(&p->failed, 1);
 }
