@@ -40,6 +40,7 @@ split() {
 # settings lie on a frontier.
 words() {
   sed -e 's/^\(processor\): .*/\1/; s/^\(compiler\): .*/\1/; s/^\(SUNDIALS\) .*/\1/' \
+    -e '/^its sum of vectors takes/d' \
     -e 's/  at most  /  interpolated  /' \
     -e 's/-\{0,1\}[0-9][0-9.]*\(e[-+]\{0,1\}[0-9][0-9]*\)\{0,1\}/N/g; s/  */ /g; s/ $//' "$1"
 }
