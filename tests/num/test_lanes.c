@@ -110,6 +110,45 @@ START_TEST(a_sweep_has_the_bits_of_plain_loops)
 }
 END_TEST
 
+/* A number that is not finite shows in the change and stays there, wherever it is. */
+START_TEST(a_sweep_shows_forces_that_are_not_finite)
+{
+  const int stages = 1 + _i % STAGES_MOST, lanes = dvi__lanes_for(stages);
+  dvi__lanes_choose(_i / STAGES_MOST);
+  fill(stages * lanes, sweep_matrix, 4), fill(lanes, node, 5), fill(stages, weight, 6);
+  fill(N, p0, 7), fill(N, factor, 8), fill(N, origin, 9);
+  for (int at = 0; at < N * stages; at += 1 + at) {
+    for (int bad = 0; bad < 2; bad++) {
+      dvi__fixed_point iteration = made_iteration(stages, 0);
+      dvi__lanes_split(&iteration);
+      force[0][at] = bad ? HUGE_VAL : (double)NAN;
+      dvi__lanes_iterate(&iteration);
+      ck_assert(!isfinite(iteration.change));
+    }
+  }
+}
+END_TEST
+
+START_TEST(a_beginning_has_the_bits_of_its_parts)
+{
+  static double g[N * STAGES_MOST], whole_start[N], whole_low[N];
+  const int stages = 1 + _i % STAGES_MOST, lanes = dvi__lanes_for(stages);
+  dvi__lanes_choose(_i / STAGES_MOST);
+  fill(stages * lanes, sweep_matrix, 4), fill(lanes, node, 5), fill(N * stages, g, 10);
+  fill(N, p0, 7), fill(N, factor, 8), fill(N, origin, 9);
+  const dvi__fixed_point whole = made_iteration(stages, 0), parts = made_iteration(stages, 1);
+  dvi__lanes_begin_from(&whole, sweep_matrix, g);
+  memcpy(whole_start, start, sizeof start), memcpy(whole_low, low, sizeof low);
+  dvi__lanes_split(&parts);
+  dvi__lanes_product(N, stages, lanes, lanes, sweep_matrix, g, Z[1]);
+  dvi__lanes_begin(&parts);
+  ck_assert_mem_eq(whole_start, start, sizeof start);
+  ck_assert_mem_eq(whole_low, low, sizeof low);
+  ck_assert_mem_eq(Z[0], Z[1], (size_t)(N * lanes) * sizeof(double));
+  ck_assert_mem_eq(Q[0], Q[1], (size_t)(N * stages) * sizeof(double));
+}
+END_TEST
+
 START_TEST(a_product_has_the_bits_of_plain_loops)
 {
   static double x[N * STAGES_MOST], out[N * LANES_MOST + 1];
@@ -272,6 +311,10 @@ SUITE(lanes)
 {
   tcase_add_checked_fixture(tests, NULL, best_again);
   tcase_add_loop_test(tests, a_sweep_has_the_bits_of_plain_loops, 0,
+                      dvi__lanes_levels() * STAGES_MOST);
+  tcase_add_loop_test(tests, a_sweep_shows_forces_that_are_not_finite, 0,
+                      dvi__lanes_levels() * STAGES_MOST);
+  tcase_add_loop_test(tests, a_beginning_has_the_bits_of_its_parts, 0,
                       dvi__lanes_levels() * STAGES_MOST);
   tcase_add_loop_test(tests, a_product_has_the_bits_of_plain_loops, 0,
                       dvi__lanes_levels() * STAGES_MOST);

@@ -27,15 +27,42 @@ static const double hardly = 0.98;
 #define LOOPS "solve/progress_width.h"
 #include "num/simd/each_width.h"
 
+/* Update the history by one correction, as update_history of progress_width.h. */
+static inline double update_alone(double correction, double noise, const dvi__criteria *criteria,
+                                  dvi__history *t)
+{
+  const double most = criteria->slowest < hardly ? criteria->slowest : hardly,
+               quotient = correction / t->last;
+  const int first = t->last == 0, loud = correction > noise;
+  const double shrinking = first ? 1 : quotient > most ? most : quotient;
+  if (t->last > noise) {
+    t->contraction = criteria->steady && !(shrinking > t->ratio) ? t->ratio : shrinking;
+    t->ratio = shrinking;
+  }
+  const int blind = t->contraction == 0;
+  const double own = t->contraction * t->own;
+  const int renewed = first || blind || (loud && (!criteria->steady || correction > own));
+  t->own = renewed ? correction : own;
+  return blind ? shrinking : t->contraction;
+}
+
 dvi__progress dvi__test_correction(double correction, dvi__history *history,
                                    const dvi__criteria *criteria, double unknown, double size)
 {
-  history1 t = {{history->last}, {history->ratio}, {history->contraction}, {history->own}};
-  const vector1 now = {correction}, whole = {unknown}, place = {size};
-  mask1 verdict;
-  test1(&now, &whole, &place, criteria, &t, &verdict);
-  *history = (dvi__history){t.last[0], history->last, t.ratio[0], t.contraction[0], t.own[0]};
-  return (dvi__progress)verdict[0];
+  const double last = history->last, feared = history->own,
+               noise = criteria->noise * (unknown + size);
+  const double expected = update_alone(correction, noise, criteria, history);
+  const int loud_before = last > noise;
+  history->before = last;
+  history->last = correction;
+  if (!(correction <= DBL_MAX)) return DVI__STALLED;
+  if (correction <= noise) {
+    const double shows = criteria->ahead ? expected * history->own : history->own;
+    const int stagnant = last != 0 && !loud_before && history->contraction == 0 &&
+                         correction >= criteria->stagnant * last;
+    if (stagnant || shows <= (criteria->ahead ? unseen : settled) * unknown) return DVI__CONVERGED;
+  }
+  return loud_before && correction > criteria->slowest * feared ? DVI__STALLED : DVI__GO_ON;
 }
 
 double dvi__ratio(double correction, const dvi__history *history)

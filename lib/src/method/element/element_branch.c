@@ -22,7 +22,7 @@ dvi_status dvi__element_straight(dvi__stepper *self, const dvi__element_place *a
 {
   dvi__element *own = self->own;
   if (at->last_h != 0)
-    dvi__action_path(own->action, at->last_Y, at->last_h, 1.0, NULL, own->dq);
+    dvi__action_path(own->action, dvi__element_last_path(self), at->last_h, 1.0, NULL, own->dq);
   else
     memcpy(own->dq, at->last_Y, (size_t)self->system->n * sizeof(double));
   DVI_TRY(dvi__legendre_inverse(dvi__action_evaluator(own->action), at->t, at->q, at->p, own->dq));

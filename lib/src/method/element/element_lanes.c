@@ -200,7 +200,7 @@ static void lanes_iterate(lanes *own, dvi__members *m)
 /* Advance the state and the memory by a step that fixed point iteration has solved. */
 static void lanes_advance(const lanes *own, size_t n, dvi__members *m, double h)
 {
-  static const size_t forgotten[] = {DVI__NEWTON_STEPS, DVI__NEWTON_WAIT};
+  static const size_t cleared[] = {DVI__NEWTON_STEPS, DVI__NEWTON_WAIT, DVI__LATE};
   const dvi__action_members *at = &own->members;
   const size_t count = (size_t)m->count;
   double *last_h = memory_row(m, DVI__LAST_H);
@@ -209,7 +209,7 @@ static void lanes_advance(const lanes *own, size_t n, dvi__members *m, double h)
   dvi__lanes_add_scaled(n * count, 1.0, at->dp, m->p, m->p_compensation);
   for (size_t k = 0; k < count; k++) dvi__add_compensated(m->t + k, m->t_compensation + k, h);
   for (size_t k = 0; k < count; k++) last_h[k] = h;
-  for (int i = 0; i < 2; i++) memset(memory_row(m, forgotten[i]), 0, count * sizeof(double));
+  for (int i = 0; i < 3; i++) memset(memory_row(m, cleared[i]), 0, count * sizeof(double));
 }
 
 void dvi__element_step_lanes(dvi__stepper *self, dvi__members *m, double h)

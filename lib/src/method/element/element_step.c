@@ -71,7 +71,8 @@ static dvi_status element_fixed_point_iterate(void *of, double *change, double *
 
 static void element_fixed_point_end(void *of, double *Y)
 {
-  dvi__action_fixed_point_path(((const dvi__element *)of)->action, Y);
+  const dvi__element *own = of;
+  if (!own->late_paths) dvi__action_fixed_point_path(own->action, Y);
 }
 
 static void element_count_memory(dvi__stepper *self, const dvi__element *own)
@@ -191,6 +192,8 @@ dvi_status dvi__element_create(dvi__stepper *self, const dvi__action_space *spac
   own->quadratic = dvi__element_is_quadratic(self->system);
   own->definite = dvi__element_is_definite(self->system, dvi__action_evaluator(own->action));
   self->weighs_damping = self->system->damping > 0;
+  own->late_paths = dvi__action_has_fixed_point(own->action) && !self->bound && !own->has_forces &&
+                    !own->has_rates && own->choice != DVI__SOLVER_CERTIFIED;
   if (self->system->place_rows > 0) DVI_TRY(dvi__action_constrain(own->action));
   if (self->system->place_rows > 0 || self->weighs_damping) return element_renew_solver(self);
   DVI_TRY(element_decouple(self, own));
@@ -270,12 +273,22 @@ void dvi__element_put(dvi__element *own, const dvi__element_place *at, double h)
 
 /* ---- guesses ---- */
 
+const double *dvi__element_last_path(const dvi__stepper *self)
+{
+  const dvi__element *own = self->own;
+  const double *memory = self->memory, *last = memory + DVI__LAST_Y;
+  if (!own->late_paths || memory[DVI__LATE] == 0) return last;
+  dvi__action_path_of_forces(own->action, memory[DVI__LAST_H], last,
+                             memory + dvi__element_forces(self), own->guess);
+  return own->guess;
+}
+
 /* Guess the continued last path, or a straight line without one. */
 static dvi_status element_guess(dvi__stepper *self, const dvi__element_place *at, double *Y)
 {
   dvi__element *own = self->own;
   if (at->last_h == 0) return dvi__element_straight(self, at, Y);
-  dvi__action_continue(own->action, at->h / at->last_h, at->last_Y, Y);
+  dvi__action_continue(own->action, at->h / at->last_h, dvi__element_last_path(self), Y);
   dvi__action_begin_multipliers(own->action, Y);
   return DVI_OK;
 }
@@ -379,12 +392,23 @@ static dvi_status element_solve(dvi__stepper *self, const dvi__element_place *at
 
 /* ---- step ---- */
 
+/* Keep the unknowns, or what they are made of. */
+static void element_keep_path(dvi__stepper *self, const double *p0)
+{
+  const dvi__element *own = self->own;
+  const int late = own->late_paths && dvi__action_is_iterated(own->action);
+  const size_t numbers = (size_t)(late ? self->system->n : dvi__action_unknowns(own->action));
+  self->memory[DVI__LATE] = late;
+  memcpy(self->memory + DVI__LAST_Y, late ? p0 : own->Y, numbers * sizeof(double));
+}
+
 static dvi_status element_advance(dvi__stepper *self, dvi__state *state, double h)
 {
   const dvi__element *own = self->own;
   const int n = self->system->n;
   double duration;
   DVI_TRY(dvi__action_duration(own->action, own->Y, &duration));
+  element_keep_path(self, state->p);
   dvi__add_compensated_all(n, state->q, state->q_compensation, own->dq);
   dvi__add_compensated_all(n, state->q, state->q_compensation, own->dq_low);
   dvi__add_compensated_all(n, state->p, state->p_compensation, own->dp);
@@ -393,8 +417,6 @@ static dvi_status element_advance(dvi__stepper *self, dvi__state *state, double 
     dvi__add_compensated_all(1 + self->system->symmetry_count, state->supplied,
                              state->supplied_compensation, own->supply);
   self->memory[DVI__LAST_H] = h;
-  memcpy(self->memory + DVI__LAST_Y, own->Y,
-         (size_t)dvi__action_unknowns(own->action) * sizeof(double));
   return DVI_OK;
 }
 
@@ -488,6 +510,6 @@ void dvi__element_path(const dvi__stepper *self, const double *q0, double h, dou
                        double *v)
 {
   const dvi__element *own = self->own;
-  dvi__action_path(own->action, self->memory + DVI__LAST_Y, h, tau, q, v);
+  dvi__action_path(own->action, dvi__element_last_path(self), h, tau, q, v);
   for (int i = 0; q != NULL && i < self->system->n; i++) q[i] += q0[i];
 }

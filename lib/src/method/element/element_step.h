@@ -48,7 +48,10 @@ dvi_status dvi__element_add_term(dvi__stepper *self, const dvi__row_term *term);
  *   DVI__NEWTON_WAIT   number of steps skipped after the last failure of fixed point iteration,
  *                      0 since its last success
  *   DVI__FULL_WAIT     the same number for simplified Newton's method
- *   DVI__LAST_Y        unknowns of the last step, or the start's velocity before the first step
+ *   DVI__LATE          1 if momenta stand in the place of the unknowns
+ *   DVI__LAST_Y        unknowns of the last step, or the start's velocity before the first step,
+ *                      or the momenta at the start of the last step, with which its forces give
+ *                      the unknowns (dvi__element_last_path)
  *
  * The forces of the last step and the frozen Jacobian of simplified Newton's method follow. */
 enum {
@@ -57,11 +60,16 @@ enum {
   DVI__FULL_STEPS,
   DVI__NEWTON_WAIT,
   DVI__FULL_WAIT,
+  DVI__LATE,
   DVI__LAST_Y
 };
 
 /* Give the place of the forces in the memory. */
 size_t dvi__element_forces(const dvi__stepper *self);
+
+/* Give the unknowns of the last step. Steps by fixed-point iteration do not need them, and leave
+ * them to those who ask. They stay until the next step or path. */
+const double *dvi__element_last_path(const dvi__stepper *self);
 
 /* Give the space of a method that is one element of the action, by its specification, spelled out
  * into text. DVI_BAD_OPTION for other methods, and if the specification names a solver, which

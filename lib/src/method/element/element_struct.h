@@ -9,8 +9,10 @@
 typedef struct dvi__element_place {
   double t, h;
   const double *q, *p;
-  double last_h;        /* 0 if there was none */
-  const double *last_Y; /* last unknowns; without a step before, a guess of the velocity [n] */
+  double last_h; /* 0 if there was none */
+  /* last unknowns, or what stands in their place; without a step before, a guess of the velocity
+   * [n] */
+  const double *last_Y;
   const double *last_g; /* last forces, NULL if not known */
 } dvi__element_place;
 
@@ -39,6 +41,8 @@ typedef struct dvi__element {
   /* paths are in charts at their start, and a path that is not near its guess is followed */
   int centred;
   int keeps_whole; /* the whole Jacobian is kept over steps */
+  /* nothing in a step by fixed-point iteration needs its path, and its forces give it later */
+  int late_paths;
   /* symmetric Jacobians, and real parts of them, are definite for short steps, because the mass is
    * constant and positive */
   int definite;
@@ -60,7 +64,7 @@ typedef struct dvi__element {
   double *dq, *dq_low, *dp;
   double *supply; /* [1 + symmetries] what forces supply in the step */
   double work;    /* what forces and time supply to the energy */
-  double *guess;  /* [unknowns] guess of the iteration, in charts */
+  double *guess;  /* [unknowns] guess of the iteration, in charts, or the last step's unknowns */
   double *branch; /* [DVI__BRANCH_ROOM * unknowns] work to follow a branch, NULL until needed */
 } dvi__element;
 

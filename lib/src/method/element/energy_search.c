@@ -54,10 +54,10 @@ dvi_status dvi__energy_search_try(dvi__energy_search *search, double h, int slop
                                   dvi__mismatch *found)
 {
   dvi__stepper *element = &search->b->element;
-  const double *Y = element->memory + DVI__LAST_Y;
   copy_state((size_t)element->system->n, search->from, &search->state);
   memcpy(element->memory, search->memory, element->memory_count * sizeof(double));
   DVI_TRY(dvi__element_step(element, &search->state, h));
+  const double *Y = dvi__element_last_path(element);
   DVI_TRY(dvi__bordered_energies(search->b, search->from, h, Y, &found->E));
   if (sloping) DVI_TRY(dvi__bordered_slope(search->b, Y, &found->slope));
   found->h = h;

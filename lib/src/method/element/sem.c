@@ -272,7 +272,7 @@ static dvi_status solve_together(dvi__stepper *self, dvi__state *state, double l
     return DVI_OK;
   }
   const dvi_status status = dvi__bordered_solve(b, state, target, rung,
-                                                b->element.memory + DVI__LAST_Y, found);
+                                                dvi__element_last_path(&b->element), found);
   if (status < 0 || !is_within(found->h, last, least, most))
     return status != DVI_OK ? status : fail_far_off(found);
   DVI_TRY(dvi__energy_search_try(&own->search, found->h, status != DVI_OK, found));

@@ -15,6 +15,14 @@ int dvi__lanes_for(int stages)
 
 enum { FETCH_AHEAD = 1024 }; /* in bytes; half of it is as good, twice as much is worse */
 
+/* A fused product gives the rounding error of a product. Where the processor has none, the library
+ * function gives the same bits. */
+INLINE void split_one(const dvi__fixed_point *s, size_t i)
+{
+  s->start[i] = s->factor[i] * s->p0[i];
+  s->low[i] = __builtin_fma(s->factor[i], s->p0[i], -s->start[i]);
+}
+
 #define LOOPS "num/simd/lanes_width.h"
 #include "num/simd/each_width.h"
 
@@ -49,26 +57,15 @@ INLINE void product(int widest, int n, int terms, int lanes, int width, const do
     product8(n, terms, lanes, width, matrix, x, out);
 }
 
-#define ITERATE(width)                       \
-  switch (s->lanes == 8 ? s->stages : 0) {   \
-  case 5: iterate_known##width(s, 5); break; \
-  case 6: iterate_known##width(s, 6); break; \
-  case 7: iterate_known##width(s, 7); break; \
-  case 8: iterate_known##width(s, 8); break; \
-  default: iterate##width(s);                \
-  }
-
 INLINE void iterate(int widest, dvi__fixed_point *s)
 {
   const int W = s->lanes < widest ? s->lanes : widest;
-  if (W == 1)
-    iterate1(s);
-  else if (W == 2)
-    ITERATE(2)
+  if (W == 2)
+    iterate2(s);
   else if (W == 4)
-    ITERATE(4)
+    iterate4(s);
   else
-    ITERATE(8)
+    iterate8(s);
 }
 
 INLINE void begin(int widest, const dvi__fixed_point *s)
@@ -89,14 +86,16 @@ INLINE void weigh(int n, int stages, const double *weight, double *x)
   stages == 8 ? weigh1(n, 8, weight, x) : weigh1(n, stages, weight, x);
 }
 
-/* A fused product gives the rounding error of a product. Where the processor has none, the library
- * function gives the same bits. */
 INLINE void split(const dvi__fixed_point *s)
 {
-  for (int i = 0; i < s->n; i++) {
-    s->start[i] = s->factor[i] * s->p0[i];
-    s->low[i] = __builtin_fma(s->factor[i], s->p0[i], -s->start[i]);
-  }
+  for (size_t i = 0; i < (size_t)s->n; i++) split_one(s, i);
+}
+
+INLINE void begin_from(int widest, const dvi__fixed_point *s, const double *table, const double *g)
+{
+  split(s);
+  product(widest, s->n, s->stages, s->lanes, s->lanes, table, g, s->Z);
+  begin(widest, s);
 }
 
 /* The error of p0 + half is Knuth's (1969), sec. 4.2.2. */
@@ -191,10 +190,12 @@ INLINE void add_scaled(int widest, size_t count, double factor, const double *x,
 
 typedef struct level {
   const char *name;
-  void (*iterate)(dvi__fixed_point *s);
+  /* by the number of stages, the first one for more than eight */
+  void (*iterate[9])(dvi__fixed_point *s);
   void (*weigh)(int n, int stages, const double *weight, double *x);
   void (*split)(const dvi__fixed_point *s);
   void (*begin)(const dvi__fixed_point *s);
+  void (*begin_from)(const dvi__fixed_point *s, const double *table, const double *g);
   void (*ends)(const dvi__ends *e);
   void (*product)(int n, int terms, int lanes, int width, const double *matrix, const double *x,
                   double *out);
@@ -205,11 +206,26 @@ typedef struct level {
                      double *compensation);
 } level;
 
-#define LEVEL(suffix, target, widest)                                                     \
-  target static void iterate_##suffix(dvi__fixed_point *s)                                \
+/* Each number of stages has a function of its own, whose few registers are soon saved. */
+#define KNOWN(suffix, target, width, stages, lanes)                   \
+  target static void iterate_##stages##_##suffix(dvi__fixed_point *s) \
+  {                                                                   \
+    iterate_known##width(s, stages, lanes);                           \
+  }
+
+#define LEVEL(suffix, target, widest, of_four)                                            \
+  target static void iterate_0_##suffix(dvi__fixed_point *s)                              \
   {                                                                                       \
     iterate(widest, s);                                                                   \
   }                                                                                       \
+  KNOWN(suffix, target, 1, 1, 1)                                                          \
+  KNOWN(suffix, target, 2, 2, 2)                                                          \
+  KNOWN(suffix, target, of_four, 3, 4)                                                    \
+  KNOWN(suffix, target, of_four, 4, 4)                                                    \
+  KNOWN(suffix, target, widest, 5, 8)                                                     \
+  KNOWN(suffix, target, widest, 6, 8)                                                     \
+  KNOWN(suffix, target, widest, 7, 8)                                                     \
+  KNOWN(suffix, target, widest, 8, 8)                                                     \
   target static void weigh_##suffix(int n, int stages, const double *weight, double *x)   \
   {                                                                                       \
     weigh(n, stages, weight, x);                                                          \
@@ -221,6 +237,14 @@ typedef struct level {
   target static void begin_##suffix(const dvi__fixed_point *s)                            \
   {                                                                                       \
     begin(widest, s);                                                                     \
+  }                                                                                       \
+  target static void begin_from_##suffix(const dvi__fixed_point *s, const double *table,  \
+                                         const double *g)                                 \
+  {                                                                                       \
+    if (s->stages == 8)                                                                   \
+      begin_eight##widest(s, table, g);                                                   \
+    else                                                                                  \
+      begin_from(widest, s, table, g);                                                    \
   }                                                                                       \
   target static void ends_##suffix(const dvi__ends *e)                                    \
   {                                                                                       \
@@ -249,21 +273,35 @@ typedef struct level {
     add_scaled(widest, count, factor, x, sum, compensation);                              \
   }
 
-LEVEL(baseline, , 2)
+LEVEL(baseline, , 2, 2)
 #ifdef __x86_64__
-LEVEL(avx2, __attribute__((target("avx2,fma"))), 4)
-LEVEL(avx512, __attribute__((target("fma,avx512f,avx512dq,avx512vl"))), 8)
+LEVEL(avx2, __attribute__((target("avx2,fma"))), 4, 4)
+LEVEL(avx512, __attribute__((target("fma,avx512f,avx512dq,avx512vl"))), 8, 4)
 #endif
 
+#define FUNCTIONS(suffix)                                                                       \
+  {                                                                                             \
+    .name = #suffix, .weigh = weigh_##suffix, .split = split_##suffix, .begin = begin_##suffix, \
+    .begin_from = begin_from_##suffix, .ends = ends_##suffix, .product = product_##suffix,      \
+    .all_finite = all_finite_##suffix, .largest = largest_##suffix,                             \
+    .kick_drift = kick_drift_##suffix, .add_scaled = add_scaled_##suffix, .iterate = {          \
+      iterate_0_##suffix,                                                                       \
+      iterate_1_##suffix,                                                                       \
+      iterate_2_##suffix,                                                                       \
+      iterate_3_##suffix,                                                                       \
+      iterate_4_##suffix,                                                                       \
+      iterate_5_##suffix,                                                                       \
+      iterate_6_##suffix,                                                                       \
+      iterate_7_##suffix,                                                                       \
+      iterate_8_##suffix                                                                        \
+    }                                                                                           \
+  }
+
 static const level levels[] = {
-    {"baseline", iterate_baseline, weigh_baseline, split_baseline, begin_baseline, ends_baseline,
-     product_baseline, all_finite_baseline, largest_baseline, kick_drift_baseline,
-     add_scaled_baseline},
+    FUNCTIONS(baseline),
 #ifdef __x86_64__
-    {"avx2", iterate_avx2, weigh_avx2, split_avx2, begin_avx2, ends_avx2, product_avx2,
-     all_finite_avx2, largest_avx2, kick_drift_avx2, add_scaled_avx2},
-    {"avx512", iterate_avx512, weigh_avx512, split_avx512, begin_avx512, ends_avx512,
-     product_avx512, all_finite_avx512, largest_avx512, kick_drift_avx512, add_scaled_avx512},
+    FUNCTIONS(avx2),
+    FUNCTIONS(avx512),
 #endif
 };
 
@@ -309,7 +347,7 @@ int dvi__lanes_level(void)
 
 void dvi__lanes_iterate(dvi__fixed_point *s)
 {
-  best()->iterate(s);
+  best()->iterate[s->stages <= 8 ? s->stages : 0](s);
 }
 
 void dvi__lanes_weigh(int n, int stages, const double *weight, double *x)
@@ -325,6 +363,11 @@ void dvi__lanes_split(const dvi__fixed_point *s)
 void dvi__lanes_begin(const dvi__fixed_point *s)
 {
   best()->begin(s);
+}
+
+void dvi__lanes_begin_from(const dvi__fixed_point *s, const double *table, const double *g)
+{
+  best()->begin_from(s, table, g);
 }
 
 void dvi__lanes_ends(const dvi__ends *ends)

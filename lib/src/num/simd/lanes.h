@@ -19,17 +19,18 @@ int dvi__lanes_for(int stages);
  * step would add up. */
 typedef struct dvi__fixed_point {
   int n, stages, lanes;
-  const double *matrix;   /* [stages*lanes], column j at matrix + j*lanes */
-  const double *node;     /* [lanes] */
-  const double *weight;   /* [stages] */
-  const double *factor;   /* [n] */
-  const double *p0;       /* [n] */
-  double *start, *low;    /* [n] */
-  const double *origin;   /* [n] */
-  double *force;          /* [n*stages], replaced by g */
-  double *Z;              /* [n*lanes], old and new */
-  double *Q;              /* [n*stages] */
-  double change, largest; /* results: largest |Z - old Z| and largest |Z| */
+  const double *matrix; /* [stages*lanes], column j at matrix + j*lanes */
+  const double *node;   /* [lanes] */
+  const double *weight; /* [stages] */
+  const double *factor; /* [n] */
+  const double *p0;     /* [n] */
+  double *start, *low;  /* [n] */
+  const double *origin; /* [n] */
+  double *force;        /* [n*stages], replaced by g */
+  double *Z;            /* [n*lanes], old and new */
+  double *Q;            /* [n*stages] */
+  /* results: largest |Z - old Z| and largest |Z|, NaN if one of them is */
+  double change, largest;
 } dvi__fixed_point;
 
 void dvi__lanes_iterate(dvi__fixed_point *iteration);
@@ -42,6 +43,10 @@ void dvi__lanes_split(const dvi__fixed_point *iteration);
 
 /* Then, if Z holds sums of forces, replace them by Z_i = factor_i (p0_i node + Z_i), and set Q. */
 void dvi__lanes_begin(const dvi__fixed_point *iteration);
+
+/* Do all of this for the sums table_k g_k of a table [stages*lanes] by columns and g [n*stages],
+ * which is not `force`. */
+void dvi__lanes_begin_from(const dvi__fixed_point *iteration, const double *table, const double *g);
 
 /* The end values of a step by the g of its last iteration:
  *     sum = sum_j g_ij,   moved + low = factor (p0 + sum/2 + sum_j slant_j g_ij),

@@ -2,10 +2,15 @@
  * header once for each width. */
 #include "num/simd/kick_drift_width.h"
 
+/* Give the largest lane of magnitudes, NaN if one is. */
 INLINE double NAME(largest_of)(const NAME(vector) * x)
 {
-  double largest = 0;
-  for (int i = 0; i < WIDTH; i++) largest = (*x)[i] > largest ? (*x)[i] : largest;
+  uint64_t bits[WIDTH];
+  double largest;
+  memcpy(bits, x, sizeof bits);
+  for (int half = WIDTH / 2; half > 0; half /= 2)
+    for (int i = 0; i < half; i++) bits[i] = bits[i] > bits[i + half] ? bits[i] : bits[i + half];
+  memcpy(&largest, bits, sizeof largest);
   return largest;
 }
 
@@ -55,8 +60,9 @@ INLINE void NAME(weigh)(int n, const int stages, const double *restrict weight,
     for (int j = 0; j < stages; j++) force[j] *= weight[j];
 }
 
-/* Make one row of an iteration, from its sums of forces to its new offsets and places. */
-INLINE void NAME(place)(const dvi__fixed_point *s, size_t i, int b, const NAME(vector) * c,
+/* Make one row of an iteration, from its sums of forces to its new offsets and the places of its
+ * first `count` stages. */
+INLINE void NAME(place)(const dvi__fixed_point *s, size_t i, int count, const NAME(vector) * c,
                         const NAME(vector) * sum, double *Z, double *Q, NAME(vector) * change,
                         NAME(vector) * largest)
 {
@@ -67,7 +73,7 @@ INLINE void NAME(place)(const dvi__fixed_point *s, size_t i, int b, const NAME(v
   NAME(larger)(change, &moved);
   NAME(larger)(largest, &next);
   NAME(store)(Z, &next, WIDTH);
-  NAME(store)(Q, &at, s->stages - b);
+  NAME(store)(Q, &at, count);
 }
 
 /* Begin with the sums of forces in Z. */
@@ -80,7 +86,8 @@ INLINE void NAME(begin)(const dvi__fixed_point *s)
       NAME(vector) sum, c;
       NAME(load)(Z, &sum);
       NAME(load)(s->node + b, &c);
-      NAME(place)(s, i, b, &c, &sum, Z, s->Q + i * (size_t)s->stages + b, &change, &largest);
+      NAME(place)
+      (s, i, s->stages - b, &c, &sum, Z, s->Q + i * (size_t)s->stages + b, &change, &largest);
     }
 }
 
@@ -95,35 +102,88 @@ INLINE void NAME(iterate)(dvi__fixed_point *s)
       NAME(row)(s->stages, s->lanes, s->matrix + b, s->force + i * stages, &sum);
       NAME(load)(s->node + b, &c);
       NAME(place)
-      (s, i, b, &c, &sum, s->Z + i * lanes + (size_t)b, s->Q + i * stages + (size_t)b, &change,
-       &largest);
+      (s, i, s->stages - b, &c, &sum, s->Z + i * lanes + (size_t)b, s->Q + i * stages + (size_t)b,
+       &change, &largest);
     }
   s->change = NAME(largest_of)(&change);
   s->largest = NAME(largest_of)(&largest);
 }
 
-/* Iterate for five to eight stages, known at compile time. The matrix' columns stay in registers
+/* Columns of at most eight stages. Compilers keep an array of them in memory, too. */
+typedef struct NAME(columns) {
+  NAME(vector) c0, c1, c2, c3, c4, c5, c6, c7;
+} NAME(columns);
+
+INLINE void NAME(load_columns)(const int stages, const int lanes, const double *matrix,
+                               NAME(columns) * c)
+{
+  NAME(load)(matrix, &c->c0);
+  if (stages > 1) NAME(load)(matrix + lanes, &c->c1);
+  if (stages > 2) NAME(load)(matrix + 2 * lanes, &c->c2);
+  if (stages > 3) NAME(load)(matrix + 3 * lanes, &c->c3);
+  if (stages > 4) NAME(load)(matrix + 4 * lanes, &c->c4);
+  if (stages > 5) NAME(load)(matrix + 5 * lanes, &c->c5);
+  if (stages > 6) NAME(load)(matrix + 6 * lanes, &c->c6);
+  if (stages > 7) NAME(load)(matrix + 7 * lanes, &c->c7);
+}
+
+/* Add up products as `row` does. */
+INLINE void NAME(known_row)(const int stages, const NAME(columns) * c, const double *g,
+                            NAME(vector) * out)
+{
+  if (stages == 8) {
+    *out = ((c->c0 * g[0] + c->c4 * g[4]) + (c->c1 * g[1] + c->c5 * g[5])) +
+           ((c->c2 * g[2] + c->c6 * g[6]) + (c->c3 * g[3] + c->c7 * g[7]));
+    return;
+  }
+  NAME(vector) sum = (NAME(vector)){0} + c->c0 * g[0];
+  if (stages > 1) sum += c->c1 * g[1];
+  if (stages > 2) sum += c->c2 * g[2];
+  if (stages > 3) sum += c->c3 * g[3];
+  if (stages > 4) sum += c->c4 * g[4];
+  if (stages > 5) sum += c->c5 * g[5];
+  if (stages > 6) sum += c->c6 * g[6];
+  *out = sum;
+}
+
+/* Iterate for at most eight stages, known at compile time. The matrix' columns stay in registers
  * while the loop passes over the coordinates. */
-INLINE void NAME(iterate_known)(dvi__fixed_point *iteration, const int stages)
+INLINE void NAME(iterate_known)(dvi__fixed_point *iteration, const int stages, const int lanes)
 {
   const dvi__fixed_point own = *iteration, *s = &own; /* a copy, which nothing else writes */
   NAME(vector) change = {0}, largest = {0};
   NAME(weigh)(s->n, stages, s->weight, s->force);
-  for (int b = 0; b < 8; b += WIDTH) {
-    NAME(vector) column[8], c;
-    for (int j = 0; j < stages; j++) NAME(load)(s->matrix + 8 * j + b, &column[j]);
+  for (int b = 0; b < lanes; b += WIDTH) {
+    NAME(columns) columns;
+    NAME(vector) c;
+    NAME(load_columns)(stages, lanes, s->matrix + b, &columns);
     NAME(load)(s->node + b, &c);
     for (size_t i = 0; i < (size_t)s->n; i++) {
-      const double *g = s->force + (size_t)stages * i;
-      NAME(vector) sum = {0}, four[4];
-      for (int j = 0; j < 4 && stages == 8; j++)
-        four[j] = column[j] * g[j] + column[j + 4] * g[j + 4];
-      for (int j = 0; j < stages && stages < 8; j++) sum += column[j] * g[j];
-      if (stages == 8) sum = (four[0] + four[1]) + (four[2] + four[3]);
-      NAME(place)
-      (s, i, b, &c, &sum, s->Z + 8 * i + b, s->Q + (size_t)stages * i + b, &change, &largest);
+      double *Z = s->Z + (size_t)lanes * i + b, *Q = s->Q + (size_t)stages * i + b;
+      NAME(vector) sum;
+      NAME(known_row)(stages, &columns, s->force + (size_t)stages * i, &sum);
+      NAME(place)(s, i, stages - b, &c, &sum, Z, Q, &change, &largest);
     }
   }
   iteration->change = NAME(largest_of)(&change);
   iteration->largest = NAME(largest_of)(&largest);
+}
+
+/* Begin with eight stages as split, product and begin do one after the other. */
+INLINE void NAME(begin_eight)(const dvi__fixed_point *iteration, const double *table,
+                              const double *g)
+{
+  const dvi__fixed_point own = *iteration, *s = &own;
+  for (int b = 0; b < 8; b += WIDTH) {
+    NAME(columns) columns;
+    NAME(vector) c, change = {0}, largest = {0};
+    NAME(load_columns)(8, 8, table + b, &columns);
+    NAME(load)(s->node + b, &c);
+    for (size_t i = 0; i < (size_t)s->n; i++) {
+      NAME(vector) sum;
+      if (b == 0) split_one(s, i);
+      NAME(known_row)(8, &columns, g + 8 * i, &sum);
+      NAME(place)(s, i, 8, &c, &sum, s->Z + 8 * i + b, s->Q + 8 * i + b, &change, &largest);
+    }
+  }
 }

@@ -30,10 +30,11 @@ INLINE void NAME(store)(double *out, const NAME(vector) * x, int count)
     }
 }
 
-/* Replace largest by max(largest, |x|), lane by lane. NaN is ignored. */
+/* Replace largest by max(largest, |x|), lane by lane. Magnitudes are ordered as their bits are,
+ * with NaN above all numbers, so that NaN stays. */
 INLINE void NAME(larger)(NAME(vector) * largest, const NAME(vector) * x)
 {
   const NAME(mask) magnitude = (NAME(mask)) * x & INT64_MAX,
-                   take = (NAME(mask))((NAME(vector))magnitude > *largest);
+                   take = (NAME(mask))(magnitude > (NAME(mask)) * largest);
   *largest = (NAME(vector))((take & magnitude) | (~take & (NAME(mask)) * largest));
 }

@@ -2,6 +2,7 @@
 #ifndef DVI_STEP_ELEMENT_ACTION_STRUCT_H
 #define DVI_STEP_ELEMENT_ACTION_STRUCT_H
 #include "step/element/action.h"
+#include "num/simd/lanes.h"
 #include "step/element/row_terms.h"
 #include "step/joint.h"
 #include "space/basis.h"
@@ -61,6 +62,7 @@ struct dvi__action {
     double *weight;      /* [stages] -h b_j, and b_j of a vector potential */
     double h;            /* the h of factor and weight */
     dvi__shifts shift;   /* from the last step's forces to offsets, [stages*lanes] by columns */
+    dvi__fixed_point iteration; /* what the loops work on at the element's place */
     /* With a vector potential, numbers of both kinds of stages [n*stages], and p0 - sum_j a_j [n].
      * Else the first two are L_q and Q. */
     double *force, *Q, *kinetic;

@@ -10,6 +10,7 @@
 #include "num/simd/lanes.h"
 #include "space/legendre.h"
 #include "space/quadrature.h"
+#include "system/evaluate/untested.h"
 
 /* ---- tables ---- */
 
@@ -179,22 +180,24 @@ void dvi__action_set_step(dvi__action *a)
   if (a->preconditioner != NULL) dvi__preconditioner_set_step(a);
 }
 
-static dvi__fixed_point fixed_point_of(const dvi__action *a)
+/* Set the arguments of the loops at the element's place. */
+static dvi__fixed_point *place_iteration(dvi__action *a)
 {
-  return (dvi__fixed_point){.n = a->n,
-                            .stages = a->fixed_point.stages,
-                            .lanes = a->fixed_point.lanes,
-                            .matrix = a->fixed_point.matrix,
-                            .node = a->fixed_point.node,
-                            .weight = a->fixed_point.weight,
-                            .factor = a->fixed_point.factor,
-                            .p0 = a->p0,
-                            .start = a->fixed_point.start,
-                            .low = a->fixed_point.low,
-                            .origin = a->q0,
-                            .force = a->fixed_point.force,
-                            .Z = a->Z,
-                            .Q = a->fixed_point.Q};
+  a->fixed_point.iteration = (dvi__fixed_point){.n = a->n,
+                                                .stages = a->fixed_point.stages,
+                                                .lanes = a->fixed_point.lanes,
+                                                .matrix = a->fixed_point.matrix,
+                                                .node = a->fixed_point.node,
+                                                .weight = a->fixed_point.weight,
+                                                .factor = a->fixed_point.factor,
+                                                .p0 = a->p0,
+                                                .start = a->fixed_point.start,
+                                                .low = a->fixed_point.low,
+                                                .origin = a->q0,
+                                                .force = a->fixed_point.force,
+                                                .Z = a->Z,
+                                                .Q = a->fixed_point.Q};
+  return &a->fixed_point.iteration;
 }
 
 /* Put offsets from the rows of a batch [n*r] into Z, from stage `first` on. */
@@ -209,8 +212,8 @@ void dvi__action_fixed_point_begin(dvi__action *a, const double *Y)
 {
   const size_t r = (size_t)a->r, stages = (size_t)a->fixed_point.stages;
   dvi__action_set_step(a);
-  const dvi__fixed_point iteration = fixed_point_of(a);
-  dvi__lanes_split(&iteration);
+  const dvi__fixed_point *iteration = place_iteration(a);
+  dvi__lanes_split(iteration);
   if (a->preconditioner != NULL) {
     memset(a->Z, 0, (size_t)a->n * (size_t)a->fixed_point.lanes * sizeof(double));
     dvi__preconditioner_begin(a);
@@ -228,14 +231,16 @@ void dvi__action_fixed_point_begin(dvi__action *a, const double *Y)
 void dvi__action_fixed_point_continue(dvi__action *a, double ratio, const double *g)
 {
   dvi__action_set_step(a);
-  const dvi__fixed_point iteration = fixed_point_of(a);
-  dvi__lanes_split(&iteration);
-  dvi__lanes_product(a->n, a->fixed_point.stages, a->fixed_point.lanes, a->fixed_point.lanes,
-                     dvi__action_fixed_point_shift(a, ratio), g, a->Z);
-  if (a->preconditioner != NULL)
-    dvi__preconditioner_begin(a);
-  else
-    dvi__lanes_begin(&iteration);
+  const dvi__fixed_point *iteration = place_iteration(a);
+  const double *shift = dvi__action_fixed_point_shift(a, ratio);
+  if (a->preconditioner == NULL) {
+    dvi__lanes_begin_from(iteration, shift, g);
+    return;
+  }
+  dvi__lanes_split(iteration);
+  dvi__lanes_product(a->n, a->fixed_point.stages, a->fixed_point.lanes, a->fixed_point.lanes, shift,
+                     g, a->Z);
+  dvi__preconditioner_begin(a);
 }
 
 /* Evaluate forces and A at the nodes, from the places and velocities of the stages. */
@@ -259,30 +264,42 @@ static dvi_status evaluate_stages(dvi__action *a)
 
 dvi_status dvi__action_iterate(dvi__action *a, double *change, double *largest)
 {
-  DVI_TRY(a->fixed_point.stages > a->r
-              ? evaluate_stages(a)
-              : dvi__potentials_gradient(a->evaluator, a->r, a->t, a->Q, a->L_q));
+  dvi__fixed_point *iteration = &a->fixed_point.iteration;
+  const dvi_status status = a->fixed_point.stages > a->r
+                                ? evaluate_stages(a)
+                                : dvi__potentials_gradient_untested(a->evaluator, a->r, a->t, a->Q,
+                                                                    a->L_q);
+  if (status != DVI_OK) return status;
   a->iterated = 1;
   if (a->preconditioner != NULL) {
     dvi__preconditioner_iterate(a, change, largest);
     return DVI_OK;
   }
-  dvi__fixed_point iteration = fixed_point_of(a);
-  dvi__lanes_iterate(&iteration);
-  *change = iteration.change;
-  *largest = iteration.largest;
+  dvi__lanes_iterate(iteration);
+  *change = iteration->change;
+  *largest = iteration->largest;
   return DVI_OK;
 }
 
-void dvi__action_fixed_point_path(dvi__action *a, double *Y)
+void dvi__action_path_of_forces(const dvi__action *a, double h, const double *p0, const double *g,
+                                double *Y)
 {
   const size_t s = (size_t)a->s;
-  dvi__lanes_product(a->n, a->fixed_point.stages, a->path_lanes, a->s, a->fixed_point.path,
-                     a->fixed_point.force, Y);
-  for (size_t i = 0; i < (size_t)a->n; i++)
-    for (size_t k = 0; k < s; k++)
-      Y[i * s + k] = a->fixed_point.start[i] * a->straight[k] +
-                     a->fixed_point.factor[i] * Y[i * s + k];
+  dvi__lanes_product(a->n, a->fixed_point.stages, a->path_lanes, a->s, a->fixed_point.path, g, Y);
+  for (size_t i = 0; i < (size_t)a->n; i++) {
+    const double factor = h / a->system->mass_diagonal[i], start = factor * p0[i];
+    for (size_t k = 0; k < s; k++) Y[i * s + k] = start * a->straight[k] + factor * Y[i * s + k];
+  }
+}
+
+void dvi__action_fixed_point_path(const dvi__action *a, double *Y)
+{
+  dvi__action_path_of_forces(a, a->h, a->p0, a->fixed_point.force, Y);
+}
+
+int dvi__action_is_iterated(const dvi__action *a)
+{
+  return a->iterated;
 }
 
 /* Take g and a of the stages apart, with p0 - sum_j a_j. */

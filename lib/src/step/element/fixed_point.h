@@ -58,7 +58,15 @@ dvi_status dvi__action_iterate(dvi__action *action, double *change, double *larg
 
 /* Give the path Y that the last iteration's forces make. dvi__action_ends then gives the ends by
  * these forces. */
-void dvi__action_fixed_point_path(dvi__action *action, double *Y);
+void dvi__action_fixed_point_path(const dvi__action *action, double *Y);
+
+/* Give the path of a step of length h from p0 by its forces g, as dvi__action_forces gave them to a
+ * system without a preconditioner. */
+void dvi__action_path_of_forces(const dvi__action *action, double h, const double *p0,
+                                const double *g, double *Y);
+
+/* Tell whether the forces are those of an iteration, and not of a residual. */
+int dvi__action_is_iterated(const dvi__action *action);
 
 /* Give the increments of dvi__action_ends by these forces. */
 void dvi__action_fixed_point_ends(const dvi__action *action, double *dq, double *dq_low,

@@ -1,0 +1,11 @@
+/* Gradients for an iteration, whose change shows numbers that are not finite. */
+#ifndef DVI_SYSTEM_EVALUATE_UNTESTED_H
+#define DVI_SYSTEM_EVALUATE_UNTESTED_H
+#include "system/evaluate/evaluator.h"
+
+/* Compute V_q as dvi__potentials_gradient, with its bits, but do not always look for NaN and Inf
+ * among its numbers. */
+dvi_status dvi__potentials_gradient_untested(dvi__evaluator *e, int count, const double *t,
+                                             const double *q, double *V_q);
+
+#endif
