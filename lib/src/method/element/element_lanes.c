@@ -197,10 +197,20 @@ static void lanes_iterate(lanes *own, dvi__members *m)
   lanes_leave(own, m);
 }
 
+/* Keep the unknowns, or what they are made of, and find the ends. */
+static void lanes_end(lanes *own, size_t n, int late, dvi__members *m)
+{
+  const size_t count = (size_t)m->count;
+  double *last = memory_row(m, DVI__LAST_Y), *is_late = memory_row(m, DVI__LATE);
+  if (late) memcpy(last, m->p, n * count * sizeof(double));
+  dvi__action_members_ends(&own->members, late ? NULL : last);
+  for (size_t k = 0; k < count; k++) is_late[k] = late;
+}
+
 /* Advance the state and the memory by a step that fixed point iteration has solved. */
 static void lanes_advance(const lanes *own, size_t n, dvi__members *m, double h)
 {
-  static const size_t cleared[] = {DVI__NEWTON_STEPS, DVI__NEWTON_WAIT, DVI__LATE};
+  static const size_t cleared[] = {DVI__NEWTON_STEPS, DVI__NEWTON_WAIT};
   const dvi__action_members *at = &own->members;
   const size_t count = (size_t)m->count;
   double *last_h = memory_row(m, DVI__LAST_H);
@@ -209,7 +219,7 @@ static void lanes_advance(const lanes *own, size_t n, dvi__members *m, double h)
   dvi__lanes_add_scaled(n * count, 1.0, at->dp, m->p, m->p_compensation);
   for (size_t k = 0; k < count; k++) dvi__add_compensated(m->t + k, m->t_compensation + k, h);
   for (size_t k = 0; k < count; k++) last_h[k] = h;
-  for (int i = 0; i < 3; i++) memset(memory_row(m, cleared[i]), 0, count * sizeof(double));
+  for (int i = 0; i < 2; i++) memset(memory_row(m, cleared[i]), 0, count * sizeof(double));
 }
 
 void dvi__element_step_lanes(dvi__stepper *self, dvi__members *m, double h)
@@ -220,6 +230,6 @@ void dvi__element_step_lanes(dvi__stepper *self, dvi__members *m, double h)
   const size_t last = own->members.chord != NULL ? DVI__LAST_Y : dvi__element_forces(self);
   lanes_begin(own, self->system->n, last, m, h, last_h);
   lanes_iterate(own, m);
-  dvi__action_members_ends(&own->members, memory_row(m, DVI__LAST_Y));
+  lanes_end(own, (size_t)self->system->n, ((const dvi__element *)self->own)->late_paths, m);
   lanes_advance(own, (size_t)self->system->n, m, h);
 }

@@ -7,6 +7,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "num/simd/members.h"
+#include "system/evaluate/untested.h"
 
 int dvi__action_has_members(const dvi__action *a)
 {
@@ -231,9 +232,10 @@ static dvi_status members_evaluate_stages(dvi__action_members *m)
 dvi_status dvi__action_members_iterate(dvi__action_members *m)
 {
   if (m->chord != NULL) return dvi__chord_members_iterate(m);
-  DVI_TRY(m->kinetic != NULL ? members_evaluate_stages(m)
-                             : dvi__potentials_gradient(m->evaluator, m->action->r * m->width, m->t,
-                                                        m->Q, m->force));
+  DVI_TRY(m->kinetic != NULL
+              ? members_evaluate_stages(m)
+              : dvi__potentials_gradient_untested(m->evaluator, m->action->r * m->width, m->t, m->Q,
+                                                  m->force));
   const dvi__members_fixed_point iteration = members_fixed_point(m);
   if (m->action->preconditioner != NULL)
     dvi__preconditioner_iterate_members(m);
@@ -272,13 +274,11 @@ static void members_part_stages(dvi__action_members *m)
   }
 }
 
-/* Find the path and the ends as dvi__action_fixed_point_path and dvi__action_fixed_point_ends. */
-void dvi__action_members_ends(dvi__action_members *m, double *Y)
+/* Find the path as dvi__action_fixed_point_path. */
+static void members_path(const dvi__action_members *m, double *Y)
 {
   const dvi__action *a = m->action;
   const size_t n = (size_t)a->n, s = (size_t)a->s, count = (size_t)m->count;
-  const int has_velocities = m->kinetic != NULL;
-  if (m->chord != NULL) return;
   dvi__members_product(a->n, a->fixed_point.stages, a->path_lanes, a->s, a->fixed_point.path,
                        m->count, m->forces, Y);
   for (size_t i = 0; i < n * s; i++) {
@@ -287,6 +287,15 @@ void dvi__action_members_ends(dvi__action_members *m, double *Y)
       Y[i * count + k] = start[k] * a->straight[i % s] +
                          a->fixed_point.factor[i / s] * Y[i * count + k];
   }
+}
+
+/* Find the path and the ends as dvi__action_fixed_point_ends. */
+void dvi__action_members_ends(dvi__action_members *m, double *Y)
+{
+  const dvi__action *a = m->action;
+  const int has_velocities = m->kinetic != NULL;
+  if (m->chord != NULL) return;
+  if (Y != NULL) members_path(m, Y);
   if (has_velocities) members_part_stages(m);
   dvi__members_ends_of(&(dvi__members_ends){.n = a->n,
                                             .stages = a->r,

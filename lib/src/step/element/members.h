@@ -72,8 +72,8 @@ void dvi__action_members_keep(dvi__action_members *members, int lane);
 
 /* Give the unknowns Y [n*s*count] and the increments dq + dq_low, dp of all members from the forces
  * kept, which then lose the part of a preconditioner's potentials, as those of dvi__action_forces.
- * With `chord` the paths are kept, and Y is not written. The numbers of members of which nothing is
- * kept mean nothing. */
+ * Y may be NULL. With `chord` the paths are kept, and Y is not written. The numbers of members of
+ * which nothing is kept mean nothing. */
 void dvi__action_members_ends(dvi__action_members *members, double *Y);
 
 /* The parts of these functions for an iteration on paths (chord_members.c). */
