@@ -40,9 +40,9 @@ static int width_for(const dvi__part *part, int count)
 {
   const dvi__program *program = &part->program;
   const int rows = scratch_rows(program) + part->unit * program->output_count + part->column_count;
-  const int room = NUMBERS / rows / DVI__LANES * DVI__LANES,
+  const int room = NUMBERS / rows / DVI__LONG_BLOCK * DVI__LONG_BLOCK,
             most = room < DVI__LANES_MAX ? room : DVI__LANES_MAX,
-            width = count / DVI__LANES * DVI__LANES < most ? count / DVI__LANES * DVI__LANES : most;
+            whole = count / DVI__LANES * DVI__LANES, width = whole < most ? whole : most;
   return width >= LEAST ? width : 0;
 }
 
@@ -79,11 +79,11 @@ DVI__EXPR_INLINE void fill_row(int width, double value, double *restrict row)
 }
 
 /* Add a row, or store it, added to zero, which gives the bits of tiles. */
-DVI__EXPR_INLINE void add_row(int width, int sets, double sign, const double *restrict row,
-                              double *restrict to)
+DVI__EXPR_INLINE void add_row(const int block, int width, int sets, double sign,
+                              const double *restrict row, double *restrict to)
 {
-  for (int first = 0; first < width; first += DVI__LANES)
-    DVI__EXPR_INDEPENDENT for (int k = first; k < first + DVI__LANES; k++)
+  for (int first = 0; first < width; first += block)
+    DVI__EXPR_INDEPENDENT for (int k = first; k < first + block; k++)
         to[k] = (sets ? 0.0 : to[k]) + sign * row[k];
 }
 
@@ -98,9 +98,11 @@ DVI__EXPR_INLINE void add_output(const dvi__part *part, const dvi__destination *
     const double *row = registers_of(part, u, e, at->width) + output * at->width;
     double *to = result + dvi__entry_at(entries, u->first + e) * at->count + at->point;
     if (target->sets)
-      add_row(at->width, 1, sign, row, to);
+      add_row(DVI__LANES, at->width, 1, sign, row, to);
+    else if (at->width % DVI__LONG_BLOCK == 0)
+      add_row(DVI__LONG_BLOCK, at->width, 0, sign, row, to);
     else
-      add_row(at->width, 0, sign, row, to);
+      add_row(DVI__LANES, at->width, 0, sign, row, to);
   }
 }
 

@@ -138,17 +138,11 @@ static void lanes_begin(lanes *own, int n, size_t last, const dvi__members *m, d
   lanes_close_up(own);
 }
 
-/* End a lane's iteration with this one. */
-static void lanes_end_one(lanes *own, dvi__members *m, int lane, int iteration)
+/* Count a lane's iterations, which end with this one. */
+static void lanes_count_one(const lanes *own, dvi__members *m, int lane, int iteration)
 {
-  dvi__action_members *at = &own->members;
+  const dvi__action_members *at = &own->members;
   const int k = at->member[lane];
-  own->going[lane] = 0;
-  if (own->verdict[lane] == DVI__STALLED) {
-    m->left[k] = 1;
-    return;
-  }
-  dvi__action_members_keep(at, lane);
   m->residuals[k] += iteration;
   m->gradients[k] += (long)iteration * dvi__action_nodes(at->action);
   m->fixed[k]++;
@@ -158,19 +152,24 @@ static void lanes_end_one(lanes *own, dvi__members *m, int lane, int iteration)
  * not be iterated any more. */
 static int lanes_test(lanes *own, dvi__members *m, int iteration, int *stalled)
 {
-  const dvi__action_members *at = &own->members;
-  int ended = 0;
+  dvi__action_members *at = &own->members;
+  int done = 0, lost = 0;
   dvi__test_corrections(at->width, at->change, at->largest, &own->criteria, &own->histories,
                         own->verdict);
   for (int lane = 0; lane < at->width; lane++) {
-    own->ended[ended] = lane;
-    ended += own->going[lane] & (own->verdict[lane] != DVI__GO_ON);
+    own->ended[done] = lane;
+    done += own->going[lane] & (own->verdict[lane] == DVI__CONVERGED);
   }
-  for (int i = 0; i < ended; i++) {
-    lanes_end_one(own, m, own->ended[i], iteration);
-    *stalled |= own->verdict[own->ended[i]] == DVI__STALLED;
+  for (int lane = 0; lane < at->width; lane++) {
+    const int stalls = own->going[lane] & (own->verdict[lane] == DVI__STALLED);
+    if (stalls) m->left[at->member[lane]] = 1;
+    lost += stalls;
+    own->going[lane] &= own->verdict[lane] == DVI__GO_ON;
   }
-  return ended;
+  dvi__action_members_keep(at, done, own->ended);
+  for (int i = 0; i < done; i++) lanes_count_one(own, m, own->ended[i], iteration);
+  *stalled = lost > 0;
+  return done + lost;
 }
 
 /* Leave the members whose iteration is cut short. */

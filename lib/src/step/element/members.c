@@ -232,10 +232,9 @@ static dvi_status members_evaluate_stages(dvi__action_members *m)
 dvi_status dvi__action_members_iterate(dvi__action_members *m)
 {
   if (m->chord != NULL) return dvi__chord_members_iterate(m);
-  DVI_TRY(m->kinetic != NULL
-              ? members_evaluate_stages(m)
-              : dvi__potentials_gradient_untested(m->evaluator, m->action->r * m->width, m->t, m->Q,
-                                                  m->force));
+  DVI_TRY(m->kinetic != NULL ? members_evaluate_stages(m)
+                             : dvi__potentials_gradient_untested(
+                                   m->evaluator, m->action->r * m->width, m->t, m->Q, m->force));
   const dvi__members_fixed_point iteration = members_fixed_point(m);
   if (m->action->preconditioner != NULL)
     dvi__preconditioner_iterate_members(m);
@@ -244,18 +243,27 @@ dvi_status dvi__action_members_iterate(dvi__action_members *m)
   return DVI_OK;
 }
 
-void dvi__action_members_keep(dvi__action_members *m, int lane)
+/* Keep rows of numbers of these lanes. All lanes are kept as a whole if they hold all members. */
+static void keep_rows(const dvi__action_members *m, size_t rows, int lanes, const int *lane,
+                      const double *x, double *kept)
 {
-  if (m->chord != NULL) {
-    dvi__chord_members_keep(m, lane);
+  const size_t count = (size_t)m->count;
+  if (lanes == m->count) {
+    memcpy(kept, x, rows * count * sizeof(double));
     return;
   }
-  const size_t rows = (size_t)m->action->n * (size_t)m->action->fixed_point.stages,
-               count = (size_t)m->count;
-  double *kept = m->forces + m->member[lane];
-  for (size_t i = 0; i < rows; i++) kept[i * count] = m->force[members_row(m, i) + (size_t)lane];
-  for (size_t i = 0; i < rows && m->kept_Q != NULL; i++)
-    m->kept_Q[i * count + (size_t)m->member[lane]] = m->Q[members_row(m, i) + (size_t)lane];
+  for (size_t i = 0; i < rows; i++)
+    for (int k = 0; k < lanes; k++)
+      kept[i * count + (size_t)m->member[lane[k]]] = x[members_row(m, i) + (size_t)lane[k]];
+}
+
+void dvi__action_members_keep(dvi__action_members *m, int lanes, const int *lane)
+{
+  const size_t rows = (size_t)m->action->n * (size_t)m->action->fixed_point.stages;
+  for (int k = 0; k < lanes && m->chord != NULL; k++) dvi__chord_members_keep(m, lane[k]);
+  if (m->chord != NULL) return;
+  keep_rows(m, rows, lanes, lane, m->force, m->forces);
+  if (m->kept_Q != NULL) keep_rows(m, rows, lanes, lane, m->Q, m->kept_Q);
 }
 
 /* Take g and a of all members apart, with p0 - sum_j a_j. */

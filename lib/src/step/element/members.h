@@ -67,8 +67,9 @@ void dvi__action_members_pack(const dvi__action_members *members, int rows, int 
 /* Make one iteration of every lane. */
 dvi_status dvi__action_members_iterate(dvi__action_members *members);
 
-/* Keep the forces of the last iteration, or the path, of the member in this lane, which is done. */
-void dvi__action_members_keep(dvi__action_members *members, int lane);
+/* Keep the forces of the last iteration, or the paths, of the members in lane[lanes], which are
+ * done. */
+void dvi__action_members_keep(dvi__action_members *members, int lanes, const int *lane);
 
 /* Give the unknowns Y [n*s*count] and the increments dq + dq_low, dp of all members from the forces
  * kept, which then lose the part of a preconditioner's potentials, as those of dvi__action_forces.
