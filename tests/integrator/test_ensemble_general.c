@@ -208,8 +208,8 @@ START_TEST(members_that_fail_are_no_one_elses_matter)
 }
 END_TEST
 
-/* A step of short length is solved by one velocity Hessian and its inverse, and takes no other
- * derivative. */
+/* A step of short length is solved with one velocity Hessian, which is inverted without a linear
+ * solver, and takes no other derivative. */
 START_TEST(a_step_takes_one_velocity_hessian)
 {
   road own = {never, never, never};
@@ -224,8 +224,7 @@ START_TEST(a_step_takes_one_velocity_hessian)
   dvi_ensemble_counters(e, &after);
   ck_assert_int_eq(after.fixed_points - before.fixed_points, 10 * MEMBERS);
   ck_assert_int_eq(after.hessians - before.hessians, 10 * MEMBERS);
-  ck_assert_int_eq(after.factorizations - before.factorizations, 10 * MEMBERS);
-  ck_assert_int_eq(after.solves - before.solves, N * 10 * MEMBERS);
+  ck_assert_int_eq(after.factorizations, before.factorizations);
   ck_assert_int_eq(after.jacobians, before.jacobians);
   ck_assert_int_eq(after.allocations, before.allocations);
   dvi_ensemble_destroy(&e);
