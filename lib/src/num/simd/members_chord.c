@@ -151,6 +151,22 @@ INLINE void eliminate(size_t n, size_t width, size_t p, double *A)
   }
 }
 
+/* Eliminate in one matrix alone, whose rows are the lanes then. */
+INLINE void eliminate_alone(size_t n, size_t p, double *A)
+{
+  double *restrict factor = A + p * n;
+  const double pivot = 1.0 / factor[p];
+  for (size_t j = 0; j < n; j++) {
+    double *restrict column = A + j * n;
+    if (j == p) continue;
+    const double from = column[p] * pivot;
+    for (size_t i = 0; i < n; i++) column[i] -= factor[i] * from;
+    column[p] = from;
+  }
+  for (size_t i = 0; i < n; i++) factor[i] = -(factor[i] * pivot);
+  factor[p] = pivot;
+}
+
 INLINE void inverse(size_t n, size_t width, double *A, double *largest, char *sound)
 {
   memset(largest, 0, n * width * sizeof(double));
@@ -159,7 +175,10 @@ INLINE void inverse(size_t n, size_t width, double *A, double *largest, char *so
     larger_magnitudes(width, A + e * width, largest + e % n * width);
   for (size_t p = 0; p < n; p++) {
     test_pivots(width, A + (p * n + p) * width, largest + p * width, sound);
-    eliminate(n, width, p, A);
+    if (width == 1)
+      eliminate_alone(n, p, A);
+    else
+      eliminate(n, width, p, A);
   }
 }
 
