@@ -1,6 +1,8 @@
 /* Evaluation of kernels at many points. Elements go through the program one by one, with points as
  * lanes, so that the program reads most numbers where they stand. The outputs of a unit wait for
  * its last element. They are then added in the order of tiles (function_run.c). */
+#include <string.h>
+
 #include "expr/function/function_parts.h"
 #include "expr/compile/lanes.h"
 
@@ -46,32 +48,6 @@ static int width_for(const dvi__part *part, int count)
   return width >= LEAST ? width : 0;
 }
 
-/* Tell whether all elements of a unit add to one entry, which tiles do by halves. */
-static int unit_folds(const dvi__entries *entries, int first)
-{
-  const dvi__track minor = dvi__track_of(&entries->minor, first);
-  if (minor.list != NULL || entries->scale == 0) return minor.list == NULL && minor.stride == 0;
-  const dvi__track major = dvi__track_of(&entries->major, first);
-  return major.list == NULL && minor.stride + entries->scale * major.stride == 0;
-}
-
-static int target_folds(const dvi__part *part, const dvi__destination *target)
-{
-  const int all = part->kernel->elements;
-  for (int m = 0; m <= target->mirrored; m++)
-    for (int first = 0; first < all; first += DVI__UNIT)
-      if (dvi__unit_size(all, first) > 1 && unit_folds(m ? &target->mirror : &target->entry, first))
-        return 1;
-  return 0;
-}
-
-int dvi__part_takes_points(const dvi__part *part)
-{
-  int folds = 0;
-  for (int k = 0; k < part->target_count; k++) folds |= target_folds(part, &part->target[k]);
-  return !part->large && !folds;
-}
-
 DVI__EXPR_INLINE void fill_row(int width, double value, double *restrict row)
 {
   for (int first = 0; first < width; first += DVI__LANES)
@@ -87,6 +63,33 @@ DVI__EXPR_INLINE void add_row(const int block, int width, int sets, double sign,
         to[k] = (sets ? 0.0 : to[k]) + sign * row[k];
 }
 
+/* Tell whether all elements of a unit add to one entry. */
+DVI__EXPR_INLINE int unit_folds(const dvi__entries *entries, const unit *u)
+{
+  const dvi__track minor = dvi__track_of(&entries->minor, u->first);
+  if (u->elements == 1 || minor.list != NULL) return 0;
+  if (entries->scale == 0) return minor.stride == 0;
+  const dvi__track major = dvi__track_of(&entries->major, u->first);
+  return major.list == NULL && minor.stride + entries->scale * major.stride == 0;
+}
+
+/* Add the sum of the elements' rows, `pitch` below each other, which is made by halves as tiles do
+ * (fold_row). */
+DVI__EXPR_INLINE void add_fold(int elements, int width, double sign, ptrdiff_t pitch,
+                               const double *restrict row, double *restrict to)
+{
+  for (int first = 0; first < width; first += DVI__LANES) {
+    double sum[DVI__UNIT][DVI__LANES];
+    for (int e = 0; e < elements; e++) memcpy(sum[e], row - e * pitch + first, sizeof sum[e]);
+    for (int left = elements; left > 1; left = (left + 1) / 2) {
+      const int half = (left + 1) / 2;
+      for (int e = 0; e < left - half; e++)
+        for (int k = 0; k < DVI__LANES; k++) sum[e][k] += sum[half + e][k];
+    }
+    for (int k = 0; k < DVI__LANES; k++) to[first + k] += sign * sum[0][k];
+  }
+}
+
 /* Add one output of all elements of a unit to its entries. */
 DVI__EXPR_INLINE void add_output(const dvi__part *part, const dvi__destination *target,
                                  const dvi__entries *entries, const stretch *at, const unit *u,
@@ -94,6 +97,12 @@ DVI__EXPR_INLINE void add_output(const dvi__part *part, const dvi__destination *
 {
   const double sign = target->negative ? -1.0 : 1.0;
   const ptrdiff_t output = scratch_rows(&part->program) + target->output;
+  if (unit_folds(entries, u)) {
+    add_fold(u->elements, at->width, sign, (ptrdiff_t)part->program.output_count * at->width,
+             registers_of(part, u, 0, at->width) + output * at->width,
+             result + dvi__entry_at(entries, u->first) * at->count + at->point);
+    return;
+  }
   for (int e = 0; e < u->elements; e++) {
     const double *row = registers_of(part, u, e, at->width) + output * at->width;
     double *to = result + dvi__entry_at(entries, u->first + e) * at->count + at->point;
