@@ -80,7 +80,9 @@ DVI__EXPR_INLINE void add_fold(int elements, int width, double sign, ptrdiff_t p
 {
   for (int first = 0; first < width; first += DVI__LANES) {
     double sum[DVI__UNIT][DVI__LANES];
-    for (int e = 0; e < elements; e++) memcpy(sum[e], row - e * pitch + first, sizeof sum[e]);
+    int loaded = 0;
+    do memcpy(sum[loaded], row - loaded * pitch + first, sizeof sum[0]);
+    while (++loaded < elements);
     for (int left = elements; left > 1; left = (left + 1) / 2) {
       const int half = (left + 1) / 2;
       for (int e = 0; e < left - half; e++)
