@@ -50,6 +50,41 @@ START_TEST(the_path_passes_through_both_ends)
 }
 END_TEST
 
+/* A step by fixed-point iteration leaves its path to those who ask, who may ask again. */
+START_TEST(the_path_is_made_of_the_forces_of_the_step)
+{
+  static const struct {
+    const char *problem, *method;
+    double h, size;
+  } runs[] = {{"outer-solar", "galerkin:degree=8", 50, 50},
+              {"magnetic-bottle", "galerkin:degree=4", 0.05, 2},
+              {"fpu", "galerkin:degree=5", 0.01, 2}};
+  problem *model = create_problem(runs[_i].problem, NULL);
+  dvi_integrator *integrator = start_integrator(model, runs[_i].method);
+  dvi_counters counters;
+  for (int step = 0; step < 4; step++) {
+    const double from = dvi_integrator_time(integrator);
+    double before[18], q[2][18];
+    memcpy(before, dvi_integrator_q(integrator), (size_t)model->nq * sizeof(double));
+    advance(integrator, runs[_i].h, 1);
+    for (int again = 0; again < 2; again++) {
+      ck_assert_int_eq(dvi_integrator_interpolate(integrator, from, q[again], NULL), DVI_OK);
+      ck_assert_double_le(distance(model->nq, q[again], before), 1e-14 * runs[_i].size);
+    }
+    ck_assert_mem_eq(q[0], q[1], (size_t)model->nq * sizeof(double));
+    ck_assert_int_eq(
+        dvi_integrator_interpolate(integrator, dvi_integrator_time(integrator), q[0], NULL),
+        DVI_OK);
+    ck_assert_double_le(distance(model->nq, q[0], dvi_integrator_q(integrator)),
+                        1e-14 * runs[_i].size);
+  }
+  dvi_integrator_counters(integrator, &counters);
+  ck_assert_int_eq(counters.fixed_points, 4);
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&model);
+}
+END_TEST
+
 /* Hermite's cubic has the velocities that belong to the momenta at its ends. The mass is 1. */
 START_TEST(the_cubic_has_the_velocities_of_the_ends)
 {
@@ -226,53 +261,16 @@ START_TEST(the_path_is_in_the_checkpoint)
 }
 END_TEST
 
-/* Only certified steps need their paths at once. Both kinds of steps have the same digits, and so
- * have their paths, however often they are asked for. */
-START_TEST(a_path_that_is_made_late_has_the_digits_of_one_made_at_once)
-{
-  static const struct {
-    const char *problem, *method;
-    double h;
-  } runs[] = {{"kepler", "galerkin:degree=8", 0.1},
-              {"outer-solar", "galerkin:degree=3", 50},
-              {"magnetic-bottle", "galerkin:degree=4", 0.05},
-              {"fpu", "galerkin:degree=5", 0.01}};
-  char certified[64];
-  double q[2][18], v[2][18];
-  problem *model = create_problem(runs[_i].problem, NULL);
-  (void)snprintf(certified, sizeof certified, "%s,solver=certified", runs[_i].method);
-  dvi_integrator *late = start_integrator(model, runs[_i].method),
-                 *at_once = start_integrator(model, certified);
-  for (int step = 0; step < 5; step++) {
-    advance(late, runs[_i].h, 1), advance(at_once, runs[_i].h, 1);
-    const double t = dvi_integrator_time(late) - 0.3 * runs[_i].h;
-    const size_t numbers = (size_t)model->nq * sizeof(double);
-    for (int again = 0; again < 2; again++) {
-      ck_assert_int_eq(dvi_integrator_interpolate(late, t, q[0], v[0]), DVI_OK);
-      ck_assert_int_eq(dvi_integrator_interpolate(at_once, t, q[1], v[1]), DVI_OK);
-      ck_assert_mem_eq(q[0], q[1], numbers);
-      ck_assert_mem_eq(v[0], v[1], numbers);
-    }
-  }
-  dvi_counters counters;
-  dvi_integrator_counters(late, &counters);
-  ck_assert_int_eq(counters.fixed_points, 5);
-  dvi_integrator_destroy(&late);
-  dvi_integrator_destroy(&at_once);
-  problem_destroy(&model);
-}
-END_TEST
-
 SUITE(dense_output)
 {
   tcase_set_timeout(tests, 60);
   tcase_add_checked_fixture(tests, make_folder, remove_folder);
   tcase_add_loop_test(tests, the_path_passes_through_both_ends, 0, METHODS);
+  tcase_add_loop_test(tests, the_path_is_made_of_the_forces_of_the_step, 0, 3);
   tcase_add_test(tests, the_cubic_has_the_velocities_of_the_ends);
   tcase_add_loop_test(tests, position_and_velocity_may_be_asked_for_alone, 0, 2);
   tcase_add_loop_test(tests, the_error_inside_a_step_has_the_order_of_the_path, 0, PATHS);
   tcase_add_loop_test(tests, times_outside_of_the_last_step_are_refused, 0, METHODS);
   tcase_add_loop_test(tests, without_a_step_there_is_no_path, 0, METHODS);
   tcase_add_loop_test(tests, the_path_is_in_the_checkpoint, 0, METHODS);
-  tcase_add_loop_test(tests, a_path_that_is_made_late_has_the_digits_of_one_made_at_once, 0, 4);
 }

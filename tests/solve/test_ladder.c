@@ -2,6 +2,7 @@
 #include <float.h>
 #include <math.h>
 
+#include "core/status.h"
 #include "support/equations.h"
 #include "support/suite.h"
 
@@ -262,6 +263,90 @@ START_TEST(shifts_of_singular_jacobians_give_steps_of_least_norm)
 }
 END_TEST
 
+/* ---- certificates ---- */
+
+/* Equations that iterate in two variables of their own, and are at the solution at once. `part` is
+ * what is left of the residual there, beside the variables. */
+typedef struct own_variables {
+  double z[2], part;
+  dvi_status status;
+  int residuals;
+} own_variables;
+
+static void begin_own(void *of, const double *x)
+{
+  (void)of, (void)x;
+}
+
+static dvi_status iterate_own(void *of, double *change, double *largest)
+{
+  const own_variables *own = of;
+  *change = 0;
+  *largest = fabs(own->z[1]);
+  return DVI_OK;
+}
+
+static void end_own(void *of, double *x)
+{
+  *x = ((const own_variables *)of)->z[0];
+}
+
+static const double *own_point(void *of)
+{
+  return ((const own_variables *)of)->z;
+}
+
+static dvi_status own_residual(void *of, const double *z, double *r)
+{
+  own_variables *own = of;
+  own->residuals++;
+  for (int i = 0; i < 2; i++) {
+    ck_assert_double_eq(z[i], own->z[i]);
+    r[i] = own->part * z[i];
+  }
+  return own->status == DVI_OK ? DVI_OK : dvi__fail(own->status, "asked to fail");
+}
+
+/* KINSOL tests the variables by one residual, and searches no other solution. */
+START_TEST(own_variables_are_certified_by_one_residual)
+{
+  static const struct {
+    double part;
+    dvi_status status, verdict;
+  } cases[] = {{0, DVI_OK, DVI_OK},
+               {1e-14, DVI_OK, DVI_OK},
+               {1e-10, DVI_OK, DVI_NOT_CONVERGED},
+               {(double)NAN, DVI_OK, DVI_NOT_CONVERGED},
+               {HUGE_VAL, DVI_OK, DVI_NOT_CONVERGED},
+               {0, DVI_CALLBACK_RETRY, DVI_NOT_CONVERGED},
+               {0, DVI_CALLBACK_FAILED, DVI_CALLBACK_FAILED}};
+  own_variables own = {{0.25, -3}, cases[_i].part, cases[_i].status, 0};
+  const dvi__equations equations = {.unknowns = 1,
+                                    .of = &own,
+                                    .fixed_point_begin = begin_own,
+                                    .fixed_point_iterate = iterate_own,
+                                    .fixed_point_end = end_own,
+                                    .own_unknowns = 2,
+                                    .own_point = own_point,
+                                    .own_residual = own_residual};
+  dvi_counters counters = {0};
+  dvi__solver *solver;
+  dvi__solve_report report;
+  double x = 0;
+  ck_assert_int_eq(dvi__solver_create(&equations, &counters, &solver), DVI_OK);
+  ck_assert_int_eq(dvi__solve(solver, DVI__FIXED_POINT, 1.0, 0, 0, &x, &report), DVI_OK);
+  const long before = counters.residuals;
+  for (int again = 1; again <= 2; again++) {
+    ck_assert_int_eq(dvi__certify(solver, 1.0, NULL, &report), cases[_i].verdict);
+    ck_assert_int_eq(own.residuals, again);
+    ck_assert_int_eq(counters.residuals - before, again);
+    ck_assert_int_eq(counters.certified, cases[_i].verdict == DVI_OK ? again : 0);
+  }
+  ck_assert_int_eq(counters.preparations, 1);
+  dvi__solver_destroy(&solver);
+}
+END_TEST
+
 SUITE(ladder)
 {
   tcase_add_loop_test(tests, every_rung_finds_the_solution_to_roundoff, 0, 3);
@@ -276,4 +361,5 @@ SUITE(ladder)
   tcase_add_loop_test(tests, a_start_on_a_critical_point_is_a_failure, 0, 2);
   tcase_add_loop_test(tests, a_row_that_is_rounding_is_solved, 0, 2);
   tcase_add_loop_test(tests, shifts_of_singular_jacobians_give_steps_of_least_norm, 0, 2);
+  tcase_add_loop_test(tests, own_variables_are_certified_by_one_residual, 0, 7);
 }

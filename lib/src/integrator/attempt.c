@@ -187,13 +187,17 @@ static void learn_from_followed(const dvi_integrator *I, int right, double bend)
   if (own[VAIN] == VAIN_LIMIT) own[SPARED] = own[WAIT] = fmax(own[WAIT], 1);
 }
 
+typedef struct alarms {
+  long jumps, fallbacks;
+} alarms;
+
 /* Take the step along its branch, in at least `parts` parts. Alarms count once, for the step that
  * is accepted. */
 static dvi_status follow_branch(dvi_integrator *I, double length, double density, int parts,
-                                const dvi_counters *before)
+                                const alarms *before)
 {
-  I->counters.jump_alarms = before->jump_alarms;
-  I->counters.energy_fallbacks = before->energy_fallbacks;
+  I->counters.jump_alarms = before->jumps;
+  I->counters.energy_fallbacks = before->fallbacks;
   I->stepper.follow = parts;
   const dvi_status status = attempt_step(I, length, density);
   I->stepper.follow = 0;
@@ -204,7 +208,7 @@ static dvi_status follow_branch(dvi_integrator *I, double length, double density
 dvi_status dvi__attempt(dvi_integrator *I, double length, double density)
 {
   const size_t n = (size_t)I->system->n;
-  const dvi_counters before = I->counters;
+  const alarms before = {I->counters.jump_alarms, I->counters.energy_fallbacks};
   DVI_TRY(attempt_step(I, length, density));
   if (!is_doubted(I)) return DVI_OK;
   keep_first(I);

@@ -19,6 +19,8 @@
 
 struct dvi__kinsol {
   dvi__solver *solver;
+  int unknowns;
+  int own; /* the unknowns are the equations' own variables, which are only tested */
   SUNContext context;
   void *memory;
   N_Vector x, x_scale, r_scale;
@@ -44,15 +46,24 @@ static int callback_return(dvi__kinsol *k, dvi_status status)
  * a NaN is among its numbers. */
 static int not_finite(const dvi__kinsol *k, N_Vector x)
 {
-  return dvi__first_not_finite((size_t)k->solver->equations.unknowns, N_VGetArrayPointer(x)) >= 0;
+  return dvi__first_not_finite((size_t)k->unknowns, NV_DATA_S(x)) >= 0;
+}
+
+static dvi_status evaluate_residual(const dvi__kinsol *k, const double *x, double *r)
+{
+  const dvi__equations *equations = &k->solver->equations;
+  if (!k->own) return dvi__solver_residual(k->solver, x, r);
+  k->solver->counters->residuals++;
+  return equations->own_residual(equations->of, x, r);
 }
 
 static int kinsol_residual(N_Vector x, N_Vector r, void *user)
 {
   dvi__kinsol *k = user;
-  const int failed = callback_return(
-      k, dvi__solver_residual(k->solver, N_VGetArrayPointer(x), N_VGetArrayPointer(r)));
-  return failed != 0 ? failed : not_finite(k, r);
+  const int failed = callback_return(k, evaluate_residual(k, NV_DATA_S(x), NV_DATA_S(r)));
+  if (failed != 0) return failed;
+  /* nothing is searched from a point that is only tested, and NaN does not pass */
+  return k->own ? 0 : not_finite(k, r);
 }
 
 static int kinsol_jacobian(N_Vector x, N_Vector r, SUNMatrix matrix, void *user, N_Vector work1,
@@ -60,7 +71,8 @@ static int kinsol_jacobian(N_Vector x, N_Vector r, SUNMatrix matrix, void *user,
 {
   dvi__kinsol *k = user;
   (void)r, (void)matrix, (void)work1, (void)work2;
-  return callback_return(k, dvi__solver_factor(k->solver, N_VGetArrayPointer(x)));
+  if (k->own) return -1; /* the test has failed already */
+  return callback_return(k, dvi__solver_factor(k->solver, NV_DATA_S(x)));
 }
 
 static SUNMatrix_ID matrix_id(SUNMatrix matrix)
@@ -93,7 +105,7 @@ static int linear_solve(SUNLinearSolver linear, SUNMatrix matrix, N_Vector x, N_
   const dvi__kinsol *k = linear->content;
   (void)matrix, (void)tolerance;
   N_VScale(1.0, b, x);
-  if (dvi__solver_correction(k->solver, N_VGetArrayPointer(x)) != DVI_OK) return 1;
+  if (dvi__solver_correction(k->solver, NV_DATA_S(x)) != DVI_OK) return 1;
   return not_finite(k, x);
 }
 
@@ -116,7 +128,7 @@ static int kinsol_create_matrix(dvi__kinsol *k)
 
 static N_Vector kinsol_new_vector(const dvi__kinsol *k)
 {
-  N_Vector made = N_VNew_Serial(k->solver->equations.unknowns, k->context);
+  N_Vector made = N_VNew_Serial(k->unknowns, k->context);
   if (made != NULL) dvi__vector_use_own_operations(made);
   return made;
 }
@@ -126,7 +138,8 @@ static int kinsol_create_vectors(dvi__kinsol *k)
   k->x = kinsol_new_vector(k);
   k->x_scale = kinsol_new_vector(k);
   k->r_scale = kinsol_new_vector(k);
-  k->row_scale = DVI_NEW(double, k->solver->equations.unknowns);
+  k->row_scale = DVI_NEW(double, k->unknowns);
+  if (k->x_scale != NULL) dvi__vector_is_constant(k->x_scale);
   return k->x != NULL && k->x_scale != NULL && k->r_scale != NULL && k->row_scale != NULL;
 }
 
@@ -140,22 +153,25 @@ static int kinsol_configure(dvi__kinsol *k)
   return m != NULL && DVI__SUNDIALS_SILENCE(KINSetErrHandlerFn, m) == 0 &&
          KINInit(m, kinsol_residual, k->x) == 0 && KINSetUserData(m, k) == 0 &&
          KINSetLinearSolver(m, k->linear, k->matrix) == 0 && KINSetJacFn(m, kinsol_jacobian) == 0 &&
-         KINSetFuncNormTol(m, tolerance) == 0 && KINSetScaledStepTol(m, 1e-15) == 0 &&
-         KINSetMaxSetupCalls(m, 1) == 0 && KINSetMaxNewtonStep(m, 1e3) == 0 &&
-         KINSetNumMaxIters(m, 100) == 0;
+         KINSetFuncNormTol(m, k->own ? tolerance_of_guess : tolerance) == 0 &&
+         KINSetScaledStepTol(m, 1e-15) == 0 && KINSetMaxSetupCalls(m, 1) == 0 &&
+         KINSetMaxNewtonStep(m, 1e3) == 0 && KINSetNumMaxIters(m, 100) == 0;
 }
 
-dvi_status dvi__kinsol_create(dvi__solver *solver, dvi__kinsol **kinsol)
+dvi_status dvi__kinsol_create(dvi__solver *solver, int own, dvi__kinsol **kinsol)
 {
   dvi__kinsol *k = *kinsol = DVI_NEW(dvi__kinsol, 1);
   if (k == NULL) return dvi__fail(DVI_NO_MEMORY, "KINSOL: no memory");
   k->solver = solver;
+  k->own = own;
+  k->unknowns = own ? solver->equations.own_unknowns : solver->equations.unknowns;
   if (dvi__sundials_context(&k->context) == 0 && kinsol_create_vectors(k) &&
       kinsol_create_matrix(k) && kinsol_configure(k))
     return DVI_OK;
   dvi__kinsol_destroy(kinsol);
   /* Only memory can be missing, because all arguments are valid. */
-  return dvi__fail(DVI_NO_MEMORY, "KINSOL: no memory for %d unknowns", solver->equations.unknowns);
+  return dvi__fail(DVI_NO_MEMORY, "KINSOL: no memory for %d unknowns",
+                   own ? solver->equations.own_unknowns : solver->equations.unknowns);
 }
 
 void dvi__kinsol_destroy(dvi__kinsol **kinsol)
@@ -180,9 +196,9 @@ void dvi__kinsol_destroy(dvi__kinsol **kinsol)
  * a division costs more than all else here. */
 static int invert_rows(dvi__kinsol *k)
 {
-  double *r_scale = N_VGetArrayPointer(k->r_scale), row = 0, inverse = 0;
+  double *r_scale = NV_DATA_S(k->r_scale), row = 0, inverse = 0;
   int usable = 1;
-  for (int i = 0; i < k->solver->equations.unknowns; i++) {
+  for (int i = 0; i < k->unknowns; i++) {
     if (k->row_scale[i] != row) {
       row = k->row_scale[i];
       inverse = 1 / (row * k->whole);
@@ -205,15 +221,17 @@ static double power_above(double x)
  * changes. A residual row over row_scale is a change of an unknown. */
 static dvi_status set_scales(dvi__kinsol *k, double size, const double *x)
 {
-  double whole = dvi__largest((size_t)k->solver->equations.unknowns, x);
+  double whole = k->own ? k->solver->whole : dvi__largest((size_t)k->unknowns, x);
   if (whole == 0) whole = size > 0 ? size : 1;
-  whole = power_above(whole);
-  int unchanged = 0;
-  DVI_TRY(k->solver->equations.row_scale(k->solver->equations.of, k->row_scale, &unchanged));
+  whole = whole >= 0.5 * k->whole && whole < k->whole ? k->whole : power_above(whole);
+  /* a row of the own variables' residual is a change of a variable */
+  int unchanged = k->own;
+  if (!k->own)
+    DVI_TRY(k->solver->equations.row_scale(k->solver->equations.of, k->row_scale, &unchanged));
   if (unchanged && whole == k->whole) return DVI_OK;
   k->whole = whole;
   N_VConst(1 / whole, k->x_scale);
-  if (invert_rows(k) && 1 / whole > 0 && 1 / whole <= DBL_MAX) return DVI_OK;
+  if ((k->own || invert_rows(k)) && 1 / whole > 0 && 1 / whole <= DBL_MAX) return DVI_OK;
   k->whole = 0;
   /* KINSOL would call this a fault of its caller, but a smaller step may have a finite path. */
   return dvi__fail(DVI_NOT_FINITE,
@@ -223,31 +241,30 @@ static dvi_status set_scales(dvi__kinsol *k, double size, const double *x)
 dvi_status dvi__kinsol_certify(dvi__kinsol *k, double size, const double *x, int *certified,
                                dvi__solve_report *report)
 {
-  const size_t bytes = (size_t)k->solver->equations.unknowns * sizeof(double);
   DVI_TRY(set_scales(k, size, x));
-  memcpy(N_VGetArrayPointer(k->x), x, bytes);
+  memcpy(NV_DATA_S(k->x), x, (size_t)k->unknowns * sizeof(double));
   k->fatal = DVI_OK;
-  (void)KINSetFuncNormTol(k->memory, tolerance_of_guess);
-  *certified = KINSol(k->memory, k->x, KIN_LINESEARCH, k->x_scale, k->r_scale) ==
-               KIN_INITIAL_GUESS_OK;
-  (void)KINSetFuncNormTol(k->memory, tolerance);
+  if (!k->own) (void)KINSetFuncNormTol(k->memory, tolerance_of_guess);
+  *certified = KINSol(k->memory, k->x, KIN_LINESEARCH, k->x_scale,
+                      k->own ? k->x_scale : k->r_scale) == KIN_INITIAL_GUESS_OK;
+  if (!k->own) (void)KINSetFuncNormTol(k->memory, tolerance);
   (void)KINGetFuncNorm(k->memory, &report->residual);
   return k->fatal;
 }
 
 dvi_status dvi__kinsol_solve(dvi__kinsol *k, double size, double *x, dvi__solve_report *report)
 {
-  const size_t bytes = (size_t)k->solver->equations.unknowns * sizeof(double);
+  const size_t bytes = (size_t)k->unknowns * sizeof(double);
   long iterations = 0;
   DVI_TRY(set_scales(k, size, x));
-  memcpy(N_VGetArrayPointer(k->x), x, bytes);
+  memcpy(NV_DATA_S(k->x), x, bytes);
   k->fatal = k->last = DVI_OK;
   const int flag = KINSol(k->memory, k->x, KIN_LINESEARCH, k->x_scale, k->r_scale);
   (void)KINGetNumNonlinSolvIters(k->memory, &iterations);
   (void)KINGetFuncNorm(k->memory, &report->residual);
   report->iterations = (int)iterations;
   if (k->fatal < 0) return k->fatal;
-  memcpy(x, N_VGetArrayPointer(k->x), bytes);
+  memcpy(x, NV_DATA_S(k->x), bytes);
   if (flag == KIN_SUCCESS || flag == KIN_INITIAL_GUESS_OK) return DVI_OK;
   if (flag == KIN_ILL_INPUT && k->last > 0)
     return k->last; /* KINSOL takes a first residual that fails for its caller's fault */

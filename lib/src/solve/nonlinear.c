@@ -198,6 +198,7 @@ void dvi__solver_destroy(dvi__solver **solver)
   dvi__solver *s = *solver;
   if (s == NULL) return;
   dvi__kinsol_destroy(&s->kinsol);
+  dvi__kinsol_destroy(&s->tester);
   dvi__linear_destroy(&s->linear);
   dvi__release(s->residual);
   dvi__release(s->before);
@@ -301,12 +302,15 @@ static dvi_status solve_by_fixed_point(dvi__solver *s, double size, int patient,
     const dvi__progress progress = dvi__test_correction(report->correction, &history, &criteria,
                                                         whole, size);
     if (progress == DVI__CONVERGED) {
+      s->whole = whole;
       if (s->equations.fixed_point_iterate != NULL)
         s->equations.fixed_point_end(s->equations.of, x);
       return DVI_OK;
     }
     if (progress == DVI__STALLED) break;
   }
+  if (s->equations.fixed_point_iterate != NULL && !(report->correction <= DBL_MAX))
+    return dvi__fail(DVI_NOT_FINITE, "fixed point iteration met numbers that are not finite");
   return dvi__fail(DVI_NOT_CONVERGED,
                    "fixed point iteration contracts too slowly (change %.1e after %.1e)",
                    history.last, history.before);
@@ -348,17 +352,17 @@ static dvi_status solve_by_simplified_newton(dvi__solver *s, double size, int wa
                    history.last, history.before);
 }
 
-static dvi_status solver_prepare_kinsol(dvi__solver *s)
+static dvi_status solver_prepare_kinsol(dvi__solver *s, int own, dvi__kinsol **kinsol)
 {
-  if (s->kinsol != NULL) return DVI_OK;
-  DVI_TRY(dvi__kinsol_create(s, &s->kinsol));
+  if (*kinsol != NULL) return DVI_OK;
+  DVI_TRY(dvi__kinsol_create(s, own, kinsol));
   s->counters->preparations++;
   return DVI_OK;
 }
 
 static dvi_status solve_by_kinsol(dvi__solver *s, double size, double *x, dvi__solve_report *report)
 {
-  DVI_TRY(solver_prepare_kinsol(s));
+  DVI_TRY(solver_prepare_kinsol(s, 0, &s->kinsol));
   s->counters->kinsols++;
   DVI_TRY(prepare_chord(s, x));
   /* KINSOL's own test is skipped. Newton's method from its last point is the stricter test. */
@@ -385,13 +389,28 @@ dvi_status dvi__solve(dvi__solver *solver, dvi__rung rung, double size, int wary
   return dvi__fail(DVI_BAD_ARGUMENT, "solver: unknown rung %d", (int)rung);
 }
 
+static dvi_status certify_own(dvi__solver *s, double size, int *certified,
+                              dvi__solve_report *report)
+{
+  DVI_TRY(solver_prepare_kinsol(s, 1, &s->tester));
+  return dvi__kinsol_certify(s->tester, size, s->equations.own_point(s->equations.of), certified,
+                             report);
+}
+
+static dvi_status certify_rows(dvi__solver *s, double size, const double *x, int *certified,
+                               dvi__solve_report *report)
+{
+  DVI_TRY(solver_prepare_kinsol(s, 0, &s->kinsol));
+  DVI_TRY(prepare_chord(s, x));
+  return dvi__kinsol_certify(s->kinsol, size, x, certified, report);
+}
+
 dvi_status dvi__certify(dvi__solver *solver, double size, const double *x,
                         dvi__solve_report *report)
 {
   int certified = 0;
-  DVI_TRY(solver_prepare_kinsol(solver));
-  DVI_TRY(prepare_chord(solver, x));
-  DVI_TRY(dvi__kinsol_certify(solver->kinsol, size, x, &certified, report));
+  DVI_TRY(x != NULL ? certify_rows(solver, size, x, &certified, report)
+                    : certify_own(solver, size, &certified, report));
   if (!certified)
     return dvi__fail(DVI_NOT_CONVERGED,
                      "KINSOL does not certify the solution (scaled residual %.1e)",

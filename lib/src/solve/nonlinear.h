@@ -62,6 +62,11 @@ struct dvi__equations {
   void (*fixed_point_begin)(void *of, const double *x);
   dvi_status (*fixed_point_iterate)(void *of, double *change, double *largest);
   void (*fixed_point_end)(void *of, double *x);
+  /* Those variables, for a test of the solution. Their number, their values after the last
+   * iteration, and the residual there, z less what one more iteration makes of it. z is a copy. */
+  int own_unknowns;
+  const double *(*own_point)(void *of);
+  dvi_status (*own_residual)(void *of, const double *z, double *r);
   /* Simplified Newton's method, or NULL. */
   dvi_status (*freeze)(void *of, const double *x);
   void (*frozen)(void *of, double *r); /* r <- correction */
@@ -101,8 +106,9 @@ void dvi__solver_destroy(dvi__solver **solver);
 dvi_status dvi__solve(dvi__solver *solver, dvi__rung rung, double size, int wary, int patient,
                       double *x, dvi__solve_report *report);
 
-/* Let KINSOL test a solution that another rung found. x stays. DVI_NOT_CONVERGED: the solution does
- * not pass, and the KINSOL rung should take over. */
+/* Let KINSOL test a solution that another rung found. x stays, and NULL stands for the equations'
+ * own variables after fixed point iteration. DVI_NOT_CONVERGED: the solution does not pass, and the
+ * KINSOL rung should take over. */
 dvi_status dvi__certify(dvi__solver *solver, double size, const double *x,
                         dvi__solve_report *report);
 

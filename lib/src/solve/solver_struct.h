@@ -20,6 +20,8 @@ struct dvi__solver {
   int in_use;          /* the current iteration uses them */
   dvi__linear *linear; /* NULL if not prepared */
   dvi__kinsol *kinsol; /* NULL if not prepared */
+  dvi__kinsol *tester; /* tests the equations' own variables; NULL if not prepared */
+  double whole;        /* largest of those after the last iteration */
 };
 
 /* Evaluate the residual and count it. */
@@ -48,8 +50,9 @@ dvi_status dvi__newton(dvi__solver *solver, double size, int wary, double *x,
                        dvi__solve_report *report);
 
 /* KINSOL (kinsol.c). After a positive status of dvi__kinsol_solve there is no solution, and x holds
- * the last point. */
-dvi_status dvi__kinsol_create(dvi__solver *solver, dvi__kinsol **kinsol);
+ * the last point. `own` makes one for the equations' own variables, which does nothing but
+ * certify. */
+dvi_status dvi__kinsol_create(dvi__solver *solver, int own, dvi__kinsol **kinsol);
 void dvi__kinsol_destroy(dvi__kinsol **kinsol);
 /* Find whether x is a solution by KINSOL's own test of its residual. */
 dvi_status dvi__kinsol_certify(dvi__kinsol *kinsol, double size, const double *x, int *certified,

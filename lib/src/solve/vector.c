@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "num/finite.h"
+#include "num/simd/wide.h"
 
 /* Number of sums that are made side by side, so that none waits for the one before. */
 enum { IN_TURN = 8 };
@@ -18,21 +19,21 @@ static double *vector_numbers(N_Vector x)
   return NV_DATA_S(x);
 }
 
-static void vector_linear_sum(sunrealtype a, N_Vector x, sunrealtype b, N_Vector y, N_Vector z)
+WIDE static void vector_linear_sum(sunrealtype a, N_Vector x, sunrealtype b, N_Vector y, N_Vector z)
 {
   const double *xs = vector_numbers(x), *ys = vector_numbers(y);
   double *zs = vector_numbers(z);
   for (sunindextype i = 0, n = vector_length(x); i < n; i++) zs[i] = a * xs[i] + b * ys[i];
 }
 
-static void vector_scale(sunrealtype a, N_Vector x, N_Vector z)
+WIDE static void vector_scale(sunrealtype a, N_Vector x, N_Vector z)
 {
   const double *xs = vector_numbers(x);
   double *zs = vector_numbers(z);
   for (sunindextype i = 0, n = vector_length(x); i < n; i++) zs[i] = a * xs[i];
 }
 
-static void vector_product(N_Vector x, N_Vector y, N_Vector z)
+WIDE static void vector_product(N_Vector x, N_Vector y, N_Vector z)
 {
   const double *xs = vector_numbers(x), *ys = vector_numbers(y);
   double *zs = vector_numbers(z);
@@ -44,7 +45,7 @@ static sunrealtype vector_max_norm(N_Vector x)
   return dvi__largest((size_t)vector_length(x), vector_numbers(x));
 }
 
-static sunrealtype vector_least(N_Vector x)
+WIDE static sunrealtype vector_least(N_Vector x)
 {
   const double *xs = vector_numbers(x);
   const sunindextype n = vector_length(x);
@@ -58,7 +59,7 @@ static sunrealtype vector_least(N_Vector x)
   return least[0];
 }
 
-static sunrealtype vector_weighted_norm(N_Vector x, N_Vector w)
+WIDE static sunrealtype vector_weighted_norm(N_Vector x, N_Vector w)
 {
   const double *xs = vector_numbers(x), *ws = vector_numbers(w);
   const sunindextype n = vector_length(x);
@@ -79,4 +80,14 @@ void dvi__vector_use_own_operations(N_Vector vector)
   vector->ops->nvmaxnorm = vector_max_norm;
   vector->ops->nvmin = vector_least;
   vector->ops->nvwl2norm = vector_weighted_norm;
+}
+
+static sunrealtype vector_any(N_Vector x)
+{
+  return vector_numbers(x)[0];
+}
+
+void dvi__vector_is_constant(N_Vector vector)
+{
+  vector->ops->nvmin = vector_any;
 }

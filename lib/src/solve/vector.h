@@ -8,4 +8,7 @@
  * step's residual. */
 void dvi__vector_use_own_operations(N_Vector vector);
 
+/* Let a vector of equal numbers give any of them for the least. */
+void dvi__vector_is_constant(N_Vector vector);
+
 #endif

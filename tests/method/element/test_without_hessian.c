@@ -102,6 +102,52 @@ START_TEST(a_step_too_large_names_a_smaller_one)
 }
 END_TEST
 
+static int flat_value(int count, const double *t, const double *q, double *V, void *user)
+{
+  (void)t, (void)q, (void)user;
+  for (int k = 0; k < count; k++) V[k] = 0;
+  return 0;
+}
+
+/* The force at the node number *user of the second coordinate is not a number. */
+static int spoilt_gradient(int count, const double *t, const double *q, double *V_q, void *user)
+{
+  const int *spoilt = user;
+  (void)t, (void)q;
+  for (int k = 0; k < 2 * count; k++) V_q[k] = 1;
+  if (count > 1 && *spoilt >= 0) V_q[count + *spoilt] = *spoilt % 2 ? HUGE_VAL : (double)NAN;
+  return 0;
+}
+
+/* The iteration sees such a force in its change. */
+START_TEST(forces_that_are_not_finite_fail_the_step)
+{
+  enum { NODES = 9 };
+  const double start[2] = {1, 2};
+  int spoilt;
+  const dvi_potential potential = {.name = "spoilt",
+                                   .value_batch = flat_value,
+                                   .gradient_batch = spoilt_gradient,
+                                   .without_hessian = 1,
+                                   .user = &spoilt};
+  const dvi_system_terms terms = {
+      .dimension = 2, .mass = {.scalar = 1}, .potentials = &potential, .potential_count = 1};
+  dvi_system *system;
+  ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
+  dvi_integrator *run = create_integrator(system, _i ? "galerkin:degree=9" : "galerkin:degree=8");
+  ck_assert_int_eq(dvi_integrator_start(run, 0, start, start), DVI_OK);
+  for (spoilt = 0; spoilt < NODES - !_i; spoilt++) {
+    ck_assert_int_eq(dvi_integrator_step(run, 0.1), DVI_NOT_FINITE);
+    ck_assert_mem_eq(dvi_integrator_q(run), start, sizeof start);
+    ck_assert_mem_eq(dvi_integrator_p(run), start, sizeof start);
+  }
+  spoilt = -1;
+  advance(run, 0.1, 1);
+  dvi_integrator_destroy(&run);
+  dvi_system_destroy(&system);
+}
+END_TEST
+
 START_TEST(the_ladder_is_explained)
 {
   char text[2000];
@@ -146,6 +192,7 @@ SUITE(without_hessian)
   tcase_add_loop_test(tests, solvers_with_hessians_are_refused, 0,
                       sizeof solvers / sizeof *solvers);
   tcase_add_test(tests, a_step_too_large_names_a_smaller_one);
+  tcase_add_loop_test(tests, forces_that_are_not_finite_fail_the_step, 0, 2);
   tcase_add_test(tests, the_ladder_is_explained);
   tcase_add_test(tests, many_modes_take_memory_in_proportion);
   tcase_add_test(tests, the_check_leaves_the_hessian_out);

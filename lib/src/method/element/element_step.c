@@ -75,6 +75,17 @@ static void element_fixed_point_end(void *of, double *Y)
   if (!own->late_paths) dvi__action_fixed_point_path(own->action, Y);
 }
 
+static const double *element_own_point(void *of)
+{
+  int count;
+  return dvi__action_offsets(((const dvi__element *)of)->action, &count);
+}
+
+static dvi_status element_own_residual(void *of, const double *z, double *r)
+{
+  return dvi__action_iteration_residual(((const dvi__element *)of)->action, z, r);
+}
+
 static void element_count_memory(dvi__stepper *self, const dvi__element *own)
 {
   self->memory_count = dvi__element_forces(self) + (size_t)dvi__action_forces_count(own->action);
@@ -130,6 +141,11 @@ static dvi_status element_create_solver(dvi__stepper *self, dvi__element *own)
       .magnitudes = dvi__action_has_terms(own->action) || self->system->damping > 0
                         ? element_magnitudes
                         : NULL};
+  if (has_fixed_point) {
+    equations.own_point = element_own_point;
+    equations.own_residual = element_own_residual;
+    (void)dvi__action_offsets(own->action, &equations.own_unknowns);
+  }
   /* unknowns of terms, such as multipliers, have no pivots of their own */
   if (equations.unknowns > self->system->n * equations.group)
     equations.linear = dvi__linear_for_exchanges(equations.unknowns);
@@ -193,7 +209,7 @@ dvi_status dvi__element_create(dvi__stepper *self, const dvi__action_space *spac
   own->definite = dvi__element_is_definite(self->system, dvi__action_evaluator(own->action));
   self->weighs_damping = self->system->damping > 0;
   own->late_paths = dvi__action_has_fixed_point(own->action) && !self->bound && !own->has_forces &&
-                    !own->has_rates && own->choice != DVI__SOLVER_CERTIFIED;
+                    !own->has_rates;
   if (self->system->place_rows > 0) DVI_TRY(dvi__action_constrain(own->action));
   if (self->system->place_rows > 0 || self->weighs_damping) return element_renew_solver(self);
   DVI_TRY(element_decouple(self, own));
@@ -357,7 +373,7 @@ static dvi_status element_solve_without(dvi__stepper *self, const dvi__element_p
                                         dvi__solve_report *report)
 {
   const dvi_status status = element_solve_by(self, at, DVI__FIXED_POINT, Y, report);
-  if (status <= 0) return status;
+  if (status <= 0 || status == DVI_NOT_FINITE) return status;
   return dvi__fail(status,
                    "fixed-point iteration does not converge (last change %.1e), and potential '%s' "
                    "is declared without the Hessian of other solvers; try a step below %.3g",
@@ -402,16 +418,26 @@ static void element_keep_path(dvi__stepper *self, const double *p0)
   memcpy(self->memory + DVI__LAST_Y, late ? p0 : own->Y, numbers * sizeof(double));
 }
 
+/* Add the increments to all coordinates and momenta. */
+static void add_increments(int n, const dvi__element *own, dvi__state *state)
+{
+  const double *restrict dq = own->dq, *restrict low = own->dq_low, *restrict dp = own->dp;
+  double *restrict q = state->q, *restrict q_compensation = state->q_compensation,
+                   *restrict p = state->p, *restrict p_compensation = state->p_compensation;
+  for (int i = 0; i < n; i++) {
+    dvi__add_compensated(q + i, q_compensation + i, dq[i]);
+    dvi__add_compensated(q + i, q_compensation + i, low[i]);
+    dvi__add_compensated(p + i, p_compensation + i, dp[i]);
+  }
+}
+
 static dvi_status element_advance(dvi__stepper *self, dvi__state *state, double h)
 {
   const dvi__element *own = self->own;
-  const int n = self->system->n;
   double duration;
   DVI_TRY(dvi__action_duration(own->action, own->Y, &duration));
   element_keep_path(self, state->p);
-  dvi__add_compensated_all(n, state->q, state->q_compensation, own->dq);
-  dvi__add_compensated_all(n, state->q, state->q_compensation, own->dq_low);
-  dvi__add_compensated_all(n, state->p, state->p_compensation, own->dp);
+  add_increments(self->system->n, own, state);
   dvi__add_compensated(&state->t, &state->t_compensation, duration);
   if (state->supplied != NULL)
     dvi__add_compensated_all(1 + self->system->symmetry_count, state->supplied,
@@ -433,8 +459,10 @@ static dvi_status element_certify(dvi__stepper *self, const dvi__element_place *
 {
   dvi__element *own = self->own;
   const double size = dvi__largest((size_t)self->system->n, at->q);
-  const dvi_status status = dvi__certify(own->solver, size, Y, report);
+  const int is_iterated = dvi__action_is_iterated(own->action);
+  const dvi_status status = dvi__certify(own->solver, size, is_iterated ? NULL : Y, report);
   if (status != DVI_NOT_CONVERGED) return status;
+  if (is_iterated) dvi__action_fixed_point_path(own->action, Y);
   DVI_TRY(dvi__solve(own->solver, DVI__KINSOL, size, 0, 0, Y, report));
   return element_ends(own, Y);
 }

@@ -28,33 +28,35 @@ INLINE void split_one(const dvi__fixed_point *s, size_t i)
 
 /* Rows of eight lanes are the most common ones, and their few terms are worth knowing at compile
  * time. */
-INLINE void product_of_eight(int n, int terms, int width, const double *matrix, const double *x,
-                             double *out)
-{
-  switch (terms) {
-  case 5: product8(n, 5, 8, width, matrix, x, out); break;
-  case 6: product8(n, 6, 8, width, matrix, x, out); break;
-  case 7: product8(n, 7, 8, width, matrix, x, out); break;
-  case 8: product8(n, 8, 8, width, matrix, x, out); break;
-  default: product8(n, terms, 8, width, matrix, x, out);
+#define PRODUCT_OF_EIGHT(width)                                                          \
+  INLINE void product_of_eight##width(int n, int terms, int count, const double *matrix, \
+                                      const double *x, double *out)                      \
+  {                                                                                      \
+    switch (terms) {                                                                     \
+    case 5: known_product##width(n, 5, count, matrix, x, out); break;                    \
+    case 6: known_product##width(n, 6, count, matrix, x, out); break;                    \
+    case 7: known_product##width(n, 7, count, matrix, x, out); break;                    \
+    case 8:                                                                              \
+      count == 8 ? known_product##width(n, 8, 8, matrix, x, out)                         \
+                 : known_product##width(n, 8, count, matrix, x, out);                    \
+      break;                                                                             \
+    default: product##width(n, terms, 8, count, matrix, x, out);                         \
+    }                                                                                    \
   }
-}
+PRODUCT_OF_EIGHT(2)
+PRODUCT_OF_EIGHT(4)
+PRODUCT_OF_EIGHT(8)
 
-/* Multiply in vectors as wide as the target has them, and at most as wide as a row. */
-INLINE void product(int widest, int n, int terms, int lanes, int width, const double *matrix,
-                    const double *x, double *out)
+/* Multiply in vectors as narrow as a row. */
+INLINE void product_of_few(int n, int terms, int lanes, int width, const double *matrix,
+                           const double *x, double *out)
 {
-  const int W = lanes < widest ? lanes : widest;
-  if (W == 1)
+  if (lanes == 1)
     product1(n, terms, lanes, width, matrix, x, out);
-  else if (W == 2)
+  else if (lanes == 2)
     product2(n, terms, lanes, width, matrix, x, out);
-  else if (W == 4)
-    product4(n, terms, lanes, width, matrix, x, out);
-  else if (lanes == 8)
-    product_of_eight(n, terms, width, matrix, x, out);
   else
-    product8(n, terms, lanes, width, matrix, x, out);
+    product4(n, terms, lanes, width, matrix, x, out);
 }
 
 INLINE void iterate(int widest, dvi__fixed_point *s)
@@ -89,13 +91,6 @@ INLINE void weigh(int n, int stages, const double *weight, double *x)
 INLINE void split(const dvi__fixed_point *s)
 {
   for (size_t i = 0; i < (size_t)s->n; i++) split_one(s, i);
-}
-
-INLINE void begin_from(int widest, const dvi__fixed_point *s, const double *table, const double *g)
-{
-  split(s);
-  product(widest, s->n, s->stages, s->lanes, s->lanes, table, g, s->Z);
-  begin(widest, s);
 }
 
 /* The error of p0 + half is Knuth's (1969), sec. 4.2.2. */
@@ -238,14 +233,6 @@ typedef struct level {
   {                                                                                       \
     begin(widest, s);                                                                     \
   }                                                                                       \
-  target static void begin_from_##suffix(const dvi__fixed_point *s, const double *table,  \
-                                         const double *g)                                 \
-  {                                                                                       \
-    if (s->stages == 8)                                                                   \
-      begin_eight##widest(s, table, g);                                                   \
-    else                                                                                  \
-      begin_from(widest, s, table, g);                                                    \
-  }                                                                                       \
   target static void ends_##suffix(const dvi__ends *e)                                    \
   {                                                                                       \
     e->stages == 8 ? ends(e, 8) : ends(e, e->stages);                                     \
@@ -253,7 +240,23 @@ typedef struct level {
   target static void product_##suffix(int n, int terms, int lanes, int width,             \
                                       const double *matrix, const double *x, double *out) \
   {                                                                                       \
-    product(widest, n, terms, lanes, width, matrix, x, out);                              \
+    if (lanes == 8)                                                                       \
+      product_of_eight##widest(n, terms, width, matrix, x, out);                          \
+    else if (lanes > 8)                                                                   \
+      product##widest(n, terms, lanes, width, matrix, x, out);                            \
+    else                                                                                  \
+      product_of_few(n, terms, lanes, width, matrix, x, out);                             \
+  }                                                                                       \
+  target static void begin_from_##suffix(const dvi__fixed_point *s, const double *table,  \
+                                         const double *g)                                 \
+  {                                                                                       \
+    if (s->stages == 8)                                                                   \
+      begin_eight##widest(s, table, g);                                                   \
+    else {                                                                                \
+      split(s);                                                                           \
+      product_##suffix(s->n, s->stages, s->lanes, s->lanes, table, g, s->Z);              \
+      begin(widest, s);                                                                   \
+    }                                                                                     \
   }                                                                                       \
   target static int all_finite_##suffix(size_t count, const double *x)                    \
   {                                                                                       \

@@ -28,16 +28,26 @@ INLINE void NAME(add_column)(int lanes, const double *matrix, const double *x, i
 INLINE void NAME(row)(int terms, int lanes, const double *matrix, const double *x,
                       NAME(vector) * out)
 {
-  NAME(vector) sum[4] = {{0}, {0}, {0}, {0}};
+  NAME(vector) sum = {0}, second, third, fourth;
   int k = 0;
-  for (; terms >= 8 && k < 4; k++) {
-    NAME(load)(matrix + (size_t)k * (size_t)lanes, &sum[k]);
-    sum[k] *= x[k];
+  if (terms < 8) {
+    for (; k < terms; k++) NAME(add_column)(lanes, matrix, x, k, &sum);
+    *out = sum;
+    return;
   }
-  for (; terms >= 8 && k + 4 <= terms; k += 4)
-    for (int j = 0; j < 4; j++) NAME(add_column)(lanes, matrix, x, k + j, &sum[j]);
-  for (; k < terms; k++) NAME(add_column)(lanes, matrix, x, k, &sum[0]);
-  *out = terms >= 8 ? (sum[0] + sum[1]) + (sum[2] + sum[3]) : sum[0];
+  NAME(load)(matrix, &sum);
+  NAME(load)(matrix + (size_t)lanes, &second);
+  NAME(load)(matrix + 2 * (size_t)lanes, &third);
+  NAME(load)(matrix + 3 * (size_t)lanes, &fourth);
+  sum *= x[0], second *= x[1], third *= x[2], fourth *= x[3];
+  for (k = 4; k + 4 <= terms; k += 4) {
+    NAME(add_column)(lanes, matrix, x, k, &sum);
+    NAME(add_column)(lanes, matrix, x, k + 1, &second);
+    NAME(add_column)(lanes, matrix, x, k + 2, &third);
+    NAME(add_column)(lanes, matrix, x, k + 3, &fourth);
+  }
+  for (; k < terms; k++) NAME(add_column)(lanes, matrix, x, k, &sum);
+  *out = (sum + second) + (third + fourth);
 }
 
 INLINE void NAME(product)(int n, int terms, int lanes, int width, const double *restrict matrix,
@@ -144,6 +154,22 @@ INLINE void NAME(known_row)(const int stages, const NAME(columns) * c, const dou
   if (stages > 5) sum += c->c5 * g[5];
   if (stages > 6) sum += c->c6 * g[6];
   *out = sum;
+}
+
+/* Multiply for at most eight terms, known at compile time, and rows of eight lanes. */
+INLINE void NAME(known_product)(int n, const int terms, const int width,
+                                const double *restrict matrix, const double *restrict x,
+                                double *restrict out)
+{
+  for (int b = 0; b < width; b += WIDTH) {
+    NAME(columns) columns;
+    NAME(load_columns)(terms, 8, matrix + b, &columns);
+    for (size_t i = 0; i < (size_t)n; i++) {
+      NAME(vector) sum;
+      NAME(known_row)(terms, &columns, x + i * (size_t)terms, &sum);
+      NAME(store)(out + i * (size_t)width + b, &sum, width - b);
+    }
+  }
 }
 
 /* Iterate for at most eight stages, known at compile time. The matrix' columns stay in registers

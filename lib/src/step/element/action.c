@@ -182,5 +182,7 @@ void dvi__action_place(dvi__action *action, double t0, double h, const double *q
   dvi__action_forget_start(action);
   dvi__action_forget_rolling(action);
   dvi__action_damp(action, h);
-  for (int j = 0; j < action->r; j++) action->t[j] = t0 + action->node[j] * h;
+  const double *restrict node = action->node;
+  double *restrict t = action->t;
+  for (int j = 0; j < action->r; j++) t[j] = t0 + node[j] * h;
 }

@@ -8,6 +8,7 @@
 #include "core/status.h"
 #include "num/cholesky.h"
 #include "num/simd/lanes.h"
+#include "num/simd/wide.h"
 #include "space/legendre.h"
 #include "space/quadrature.h"
 #include "system/evaluate/untested.h"
@@ -214,8 +215,9 @@ void dvi__action_fixed_point_begin(dvi__action *a, const double *Y)
   dvi__action_set_step(a);
   const dvi__fixed_point *iteration = place_iteration(a);
   dvi__lanes_split(iteration);
+  /* a step that failed may have left NaN behind the stages of a row */
+  memset(a->Z, 0, (size_t)a->n * (size_t)a->fixed_point.lanes * sizeof(double));
   if (a->preconditioner != NULL) {
-    memset(a->Z, 0, (size_t)a->n * (size_t)a->fixed_point.lanes * sizeof(double));
     dvi__preconditioner_begin(a);
     return;
   }
@@ -243,8 +245,9 @@ void dvi__action_fixed_point_continue(dvi__action *a, double ratio, const double
   dvi__preconditioner_begin(a);
 }
 
-/* Evaluate forces and A at the nodes, from the places and velocities of the stages. */
-static dvi_status evaluate_stages(dvi__action *a)
+/* Evaluate forces and A at the nodes, from the places and velocities of the stages. This and the
+ * other kinds of iterations are compiled apart, so that the common one is lean. */
+__attribute__((noinline)) static dvi_status evaluate_stages(dvi__action *a)
 {
   const size_t r = (size_t)a->r, stages = (size_t)a->fixed_point.stages,
                lanes = (size_t)a->fixed_point.lanes;
@@ -278,6 +281,26 @@ dvi_status dvi__action_iterate(dvi__action *a, double *change, double *largest)
   dvi__lanes_iterate(iteration);
   *change = iteration->change;
   *largest = iteration->largest;
+  return DVI_OK;
+}
+
+const double *dvi__action_offsets(const dvi__action *a, int *count)
+{
+  *count = a->n * a->fixed_point.lanes;
+  return a->Z;
+}
+
+WIDE static void subtract(size_t count, const double *restrict x, const double *restrict y,
+                          double *restrict difference)
+{
+  for (size_t k = 0; k < count; k++) difference[k] = x[k] - y[k];
+}
+
+dvi_status dvi__action_iteration_residual(dvi__action *a, const double *Z, double *residual)
+{
+  double change, largest;
+  DVI_TRY(dvi__action_iterate(a, &change, &largest));
+  subtract((size_t)a->n * (size_t)a->fixed_point.lanes, Z, a->Z, residual);
   return DVI_OK;
 }
 

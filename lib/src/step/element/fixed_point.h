@@ -56,6 +56,14 @@ void dvi__action_fixed_point_continue(dvi__action *action, double ratio, const d
  * offset. */
 dvi_status dvi__action_iterate(dvi__action *action, double *change, double *largest);
 
+/* Give the offsets after the last iteration, and their number. A row for each coordinate is padded
+ * with zeros. */
+const double *dvi__action_offsets(const dvi__action *action, int *count);
+
+/* Give the residual of the offsets after the last iteration, of which Z is a copy. This is Z less
+ * those that one more iteration makes of them. */
+dvi_status dvi__action_iteration_residual(dvi__action *action, const double *Z, double *residual);
+
 /* Give the path Y that the last iteration's forces make. dvi__action_ends then gives the ends by
  * these forces. */
 void dvi__action_fixed_point_path(const dvi__action *action, double *Y);

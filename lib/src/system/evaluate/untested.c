@@ -8,17 +8,45 @@ WIDE static void add_gradient(size_t length, const double *restrict term, double
   for (size_t i = 0; i < length; i++) sum[i] += term[i];
 }
 
-/* Evaluate one potential. Only a batch callback costs no more than its own work. */
+/* What is not the gradient of one potential by its batch callback is compiled apart, so that this
+ * costs hardly more than the callback's own work. */
+
+__attribute__((noinline)) static dvi_status refuse(const dvi__potential_term *term, int returned)
+{
+  return dvi__verdict(returned, 0, 0, NULL, term->name, "gradient", "");
+}
+
+/* Evaluate a potential of another shape, or by differences. */
+__attribute__((noinline)) static dvi_status by_point(dvi__evaluator *e,
+                                                     const dvi__potential_term *term, int count,
+                                                     const double *t, const double *q,
+                                                     double *gradient)
+{
+  const dvi_status status = dvi__potential_gradient(term, &e->scratch, count, t, q, gradient);
+  dvi__count_differences(e);
+  return status;
+}
+
 static inline dvi_status evaluate_term(dvi__evaluator *e, const dvi__potential_term *term,
                                        int count, const double *t, const double *q,
                                        double *gradient)
 {
   const dvi_potential *c = &term->callbacks;
-  if (c->gradient_batch == NULL)
-    return dvi__potential_gradient(term, &e->scratch, count, t, q, gradient);
+  if (c->gradient_batch == NULL) return by_point(e, term, count, t, q, gradient);
   const int returned = c->gradient_batch(count, t, q, gradient, c->user);
-  return returned == 0 ? DVI_OK
-                       : dvi__verdict(returned, 0, count, gradient, term->name, "gradient", "");
+  return returned == 0 ? DVI_OK : refuse(term, returned);
+}
+
+__attribute__((noinline)) static dvi_status sum_terms(dvi__evaluator *e, int count, const double *t,
+                                                      const double *q, double *V_q)
+{
+  const dvi_system *s = e->system;
+  dvi_status status = evaluate_term(e, &s->potentials[0], count, t, q, V_q);
+  for (int p = 1; p < s->potential_count && status == DVI_OK; p++) {
+    status = evaluate_term(e, &s->potentials[p], count, t, q, e->term);
+    add_gradient((size_t)s->n * (size_t)count, e->term, V_q);
+  }
+  return status;
 }
 
 dvi_status dvi__potentials_gradient_untested(dvi__evaluator *e, int count, const double *t,
@@ -28,11 +56,6 @@ dvi_status dvi__potentials_gradient_untested(dvi__evaluator *e, int count, const
   if (s->potential_count == 0 || s->force_count > 0)
     return dvi__potentials_gradient(e, count, t, q, V_q);
   e->counters->gradients += count;
-  dvi_status status = evaluate_term(e, &s->potentials[0], count, t, q, V_q);
-  for (int p = 1; p < s->potential_count && status == DVI_OK; p++) {
-    status = evaluate_term(e, &s->potentials[p], count, t, q, e->term);
-    add_gradient((size_t)s->n * (size_t)count, e->term, V_q);
-  }
-  if (e->scratch.of_value.points > 0) dvi__count_differences(e);
-  return status;
+  if (s->potential_count > 1) return sum_terms(e, count, t, q, V_q);
+  return evaluate_term(e, s->potentials, count, t, q, V_q);
 }
