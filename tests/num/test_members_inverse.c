@@ -1,6 +1,6 @@
 /* labels: unit */
-/* Inverses of many small matrices side by side have the bits of one alone, and say where elimination
- * without exchanges is not sound. */
+/* Inverses of many small matrices side by side have the bits of one alone, and say where
+ * elimination without exchanges is not sound. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -72,8 +72,8 @@ START_TEST(every_member_has_the_bits_of_one_alone)
 }
 END_TEST
 
-/* Matrices of two rows, by columns, side by side: a positive one, one without a diagonal, a singular
- * one, one with NaN, and one of very different units. */
+/* Matrices of two rows, by columns, side by side: a positive one, one without a diagonal, a
+ * singular one, one with NaN, and one of very different units. */
 START_TEST(matrices_that_need_exchanges_are_told)
 {
   enum { WIDTH = 5 };
