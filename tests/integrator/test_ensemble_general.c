@@ -59,6 +59,42 @@ static dvi_system *create_road(road *own)
   return made;
 }
 
+/* L = v1 v2 - sin(q1) q2, whose mass cannot be inverted without exchanges. Members go alone. */
+static int crossed_value(double t, const double *q, const double *v, double *L, void *user)
+{
+  (void)t, (void)user;
+  *L = v[0] * v[1] - sin(q[0]) * q[1];
+  return 0;
+}
+
+static int crossed_gradient(double t, const double *q, const double *v, double *L_q, double *L_v,
+                            void *user)
+{
+  (void)t, (void)user;
+  L_q[0] = -cos(q[0]) * q[1], L_q[1] = -sin(q[0]);
+  L_v[0] = v[1], L_v[1] = v[0];
+  return 0;
+}
+
+static int crossed_hessian(double t, const double *q, const double *v, double *L_qq, double *L_qv,
+                           double *L_vv, void *user)
+{
+  const double qq[] = {sin(q[0]) * q[1], -cos(q[0]), -cos(q[0]), 0}, vv[] = {0, 1, 1, 0};
+  (void)t, (void)v, (void)user;
+  memcpy(L_qq, qq, sizeof qq), memset(L_qv, 0, sizeof qq), memcpy(L_vv, vv, sizeof vv);
+  return 0;
+}
+
+static dvi_system *create_crossed(void)
+{
+  dvi_system *made = NULL;
+  const dvi_lagrangian L = {
+      .value = crossed_value, .gradient = crossed_gradient, .hessian = crossed_hessian};
+  const dvi_system_terms terms = {.dimension = N, .lagrangian = &L, .autonomous = 1};
+  ck_assert_msg(dvi_system_create(&terms, &made) == DVI_OK, "%s", dvi_last_error());
+  return made;
+}
+
 static int hill_value(double t, const double *q, double *V, void *user)
 {
   (void)t, (void)user;
@@ -162,12 +198,13 @@ static const char *const methods[] = {
     "midpoint",          "trapezoidal",
     "galerkin:degree=3", "galerkin:degree=3,solver=fixed-point",
     "galerkin:degree=8", "composition:order=4,base=galerkin,degree=2"};
-enum { METHODS = sizeof methods / sizeof *methods, KINDS = 3 };
+enum { METHODS = sizeof methods / sizeof *methods, KINDS = 4 };
 
 static const double never = 1e300;
 
 static dvi_system *create_kind(int kind, road *own)
 {
+  if (kind == 3) return create_crossed();
   return kind == 0 ? create_road(own) : create_coupled(kind == 2);
 }
 
@@ -208,8 +245,8 @@ START_TEST(members_that_fail_are_no_one_elses_matter)
 }
 END_TEST
 
-/* A step of short length is solved by one velocity Hessian and its inverse, and takes no other
- * derivative. */
+/* A step of short length is solved with one velocity Hessian, which is inverted without a linear
+ * solver, and takes no other derivative. */
 START_TEST(a_step_takes_one_velocity_hessian)
 {
   road own = {never, never, never};
@@ -224,8 +261,7 @@ START_TEST(a_step_takes_one_velocity_hessian)
   dvi_ensemble_counters(e, &after);
   ck_assert_int_eq(after.fixed_points - before.fixed_points, 10 * MEMBERS);
   ck_assert_int_eq(after.hessians - before.hessians, 10 * MEMBERS);
-  ck_assert_int_eq(after.factorizations - before.factorizations, 10 * MEMBERS);
-  ck_assert_int_eq(after.solves - before.solves, N * 10 * MEMBERS);
+  ck_assert_int_eq(after.factorizations, before.factorizations);
   ck_assert_int_eq(after.jacobians, before.jacobians);
   ck_assert_int_eq(after.allocations, before.allocations);
   dvi_ensemble_destroy(&e);

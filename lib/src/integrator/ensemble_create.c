@@ -13,7 +13,7 @@ enum { THREADS_MOST = 1024, BLOCK_MOST = 65536 };
  * the second-level cache. A block has enough members to fill vectors, and few enough to give every
  * thread work. Byte code takes half as long again with 8 members of 18 coordinates as with 32,
  * callbacks in C as long. */
-enum { SIDE_BY_SIDE_LEAST = 8, SIDE_BY_SIDE_MOST = 64, NUMBERS_SIDE_BY_SIDE = 10240 };
+enum { SIDE_BY_SIDE_LEAST = 8, SIDE_BY_SIDE_MOST = 64, NUMBERS_SIDE_BY_SIDE = 12800 };
 
 static const dvi_system *system_of(const dvi_system *system, const dvi_ensemble_options *o,
                                    int member)

@@ -64,19 +64,16 @@ static void take_back_lane(const dvi_ensemble *e, const dvi__worker *w, const dv
     block->numbers[i * count + k] = w->numbers[i * count + k];
 }
 
-/* Keep what the driver keeps of a general Lagrangian's step, and count the velocity Hessian and its
- * inverse by which each fixed point iteration is solved. */
+/* Keep what the driver keeps of a general Lagrangian's step, and count the velocity Hessian with
+ * which each fixed point iteration is solved. */
 static void accept_general(const dvi_ensemble *e, const dvi__worker *w, const dvi__block *block,
                            size_t k)
 {
-  const size_t count = (size_t)block->count, n = (size_t)e->n;
-  dvi_counters *counters = &w->integrator->counters;
-  for (size_t i = 0; i < n; i++)
+  const size_t count = (size_t)block->count;
+  for (size_t i = 0; i < (size_t)e->n; i++)
     dvi__driver_row(e, block,
                     DVI__MEMBER_LAST + i)[k] = w->numbers[(DVI__MEMBER_Q + i) * count + k];
-  counters->hessians += w->members.fixed[k];
-  counters->factorizations += w->members.fixed[k];
-  counters->solves += (long)n * w->members.fixed[k];
+  w->integrator->counters.hessians += w->members.fixed[k];
 }
 
 static void accept_lanes(const dvi_ensemble *e, dvi__worker *w, const dvi__block *block)

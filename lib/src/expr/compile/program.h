@@ -10,6 +10,7 @@
 enum {
   /* A row consists of blocks of so many lanes. Its last lanes may be idle, but hold numbers. */
   DVI__LANES = 8,
+  DVI__LONG_BLOCK = 64, /* lanes of which whole blocks go faster */
   DVI__LANES_MAX = 256, /* lanes of a row */
   DVI__ROWS_MAX = 16384 /* inputs, registers and outputs of a program */
 };

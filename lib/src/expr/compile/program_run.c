@@ -170,14 +170,16 @@ DVI__EXPR_INLINE double value_if(double condition, double x)
   X(positive, DVI__OP_POSITIVE, a[k] > 0.0 ? 1.0 : a[k] <= 0.0 ? 0.0 : a[k]) \
   X(where, DVI__OP_WHERE, value_if(a[k], b[k]))
 
-#define LOOP(name, code, expression)                                                               \
-  DVI__EXPR_INLINE void name##_rows(int width, double value, const double *restrict a,             \
-                                    const double *restrict b, const double *restrict c,            \
-                                    double *restrict to)                                           \
-  {                                                                                                \
-    (void)value, (void)a, (void)b, (void)c;                                                        \
-    for (int first = 0; first < width; first += DVI__LANES)                                        \
-      DVI__EXPR_INDEPENDENT for (int k = first; k < first + DVI__LANES; k++) to[k] = (expression); \
+/* Rows are computed by `block` lanes, known at compile time. A long loop of few lanes each ends
+ * unforeseen. */
+#define LOOP(name, code, expression)                                                          \
+  DVI__EXPR_INLINE void name##_rows(const int block, int width, double value,                 \
+                                    const double *restrict a, const double *restrict b,       \
+                                    const double *restrict c, double *restrict to)            \
+  {                                                                                           \
+    (void)value, (void)a, (void)b, (void)c;                                                   \
+    for (int first = 0; first < width; first += block)                                        \
+      DVI__EXPR_INDEPENDENT for (int k = first; k < first + block; k++) to[k] = (expression); \
   }
 LOOPS(LOOP)
 #undef LOOP
@@ -211,8 +213,9 @@ static void call_library(int op, int lanes, int width, const double *restrict a,
 }
 
 /* Run all instructions. `below` is 1 if the rows of inputs stand below the registers. */
-DVI__EXPR_INLINE void run_instructions(const int below, const dvi__program *program, int lanes,
-                                       int width, const double *const *input, double *registers)
+DVI__EXPR_INLINE void run_instructions(const int below, const int block,
+                                       const dvi__program *program, int lanes, int width,
+                                       const double *const *input, double *registers)
 {
   const dvi__instruction *const end = program->instruction + program->instruction_count;
 #define ROW(i) (below || (i) >= 0 ? registers + (ptrdiff_t)(i)*width : input[~(i)])
@@ -223,7 +226,7 @@ DVI__EXPR_INLINE void run_instructions(const int below, const dvi__program *prog
     const double value = at->value;
     switch (at->op) {
 #define CASE(name, code, expression) \
-  case code: name##_rows(width, value, a, b, c, to); break;
+  case code: name##_rows(block, width, value, a, b, c, to); break;
       LOOPS(CASE)
 #undef CASE
     case DVI__CODE_WHOLE_POWER: whole_powers(width, value, a, to); break;
@@ -243,7 +246,7 @@ DVI__EXPR_INLINE void run_instructions(const int below, const dvi__program *prog
 DVI__EXPR_INLINE void run_body(const dvi__program *program, int lanes, const double *const *input,
                                double *registers)
 {
-  run_instructions(0, program, lanes, dvi__row_width(lanes), input, registers);
+  run_instructions(0, DVI__LANES, program, lanes, dvi__row_width(lanes), input, registers);
 }
 
 DVI__EXPR_VERSIONS(run,
@@ -251,9 +254,20 @@ DVI__EXPR_VERSIONS(run,
                     double *registers),
                    (program, lanes, input, registers))
 
+DVI__EXPR_INLINE void run_long_body(const dvi__program *program, int lanes,
+                                    const double *const *input, double *registers)
+{
+  run_instructions(0, DVI__LONG_BLOCK, program, lanes, lanes, input, registers);
+}
+
+DVI__EXPR_VERSIONS(run_long,
+                   (const dvi__program *program, int lanes, const double *const *input,
+                    double *registers),
+                   (program, lanes, input, registers))
+
 DVI__EXPR_INLINE void run_block_body(const dvi__program *program, int lanes, double *registers)
 {
-  run_instructions(1, program, lanes, DVI__LANES, NULL, registers);
+  run_instructions(1, DVI__LANES, program, lanes, DVI__LANES, NULL, registers);
 }
 
 DVI__EXPR_VERSIONS(run_block, (const dvi__program *program, int lanes, double *registers),
@@ -263,7 +277,10 @@ DVI__EXPR_VERSIONS(run_block, (const dvi__program *program, int lanes, double *r
 void dvi__program_run(const dvi__program *program, int lanes, const double *const *input,
                       double *registers)
 {
-  run(program, lanes, input, registers);
+  if (lanes % DVI__LONG_BLOCK == 0)
+    run_long(program, lanes, input, registers);
+  else
+    run(program, lanes, input, registers);
 }
 
 void dvi__program_run_block(const dvi__program *program, int lanes, double *registers)

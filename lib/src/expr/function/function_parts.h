@@ -51,7 +51,6 @@ typedef struct dvi__part {
   int variable_count, column_count, target_count;
   int unit, lanes;               /* elements of a unit, most lanes of a tile */
   int large;                     /* 1 if tiles do not fit into the nearest cache */
-  int takes_points;              /* 1 if dvi__part_run_points serves */
   int *block;                    /* [variable_count] */
   dvi__element_places *variable; /* [variable_count] */
   const double **column;         /* [column_count], [elements], depend on no variable */
@@ -178,10 +177,9 @@ const dvi__function_sum *dvi__function_sum_of(const dvi__function *function, dvi
 void dvi__function_enter(dvi__function *function);
 dvi_status dvi__function_leave(dvi__function *function, dvi_status status);
 
-/* Tell whether elements of a part, which is planned, may go through its program one by one. Add it
- * at as many of the first points as serve as lanes of whole blocks. Returns how many those are,
- * which is 0 where points are few. */
-int dvi__part_takes_points(const dvi__part *part);
+/* Add a part, not large, whose elements go through its program one by one, at as many of the first
+ * points as serve as lanes of whole blocks. Returns how many those are, which is 0 where points are
+ * few. */
 int dvi__part_run_points(const dvi__part *part, int count, const double *const *x,
                          double *const *result);
 

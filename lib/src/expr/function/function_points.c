@@ -1,6 +1,8 @@
 /* Evaluation of kernels at many points. Elements go through the program one by one, with points as
  * lanes, so that the program reads most numbers where they stand. The outputs of a unit wait for
  * its last element. They are then added in the order of tiles (function_run.c). */
+#include <string.h>
+
 #include "expr/function/function_parts.h"
 #include "expr/compile/lanes.h"
 
@@ -40,36 +42,10 @@ static int width_for(const dvi__part *part, int count)
 {
   const dvi__program *program = &part->program;
   const int rows = scratch_rows(program) + part->unit * program->output_count + part->column_count;
-  const int room = NUMBERS / rows / DVI__LANES * DVI__LANES,
+  const int room = NUMBERS / rows / DVI__LONG_BLOCK * DVI__LONG_BLOCK,
             most = room < DVI__LANES_MAX ? room : DVI__LANES_MAX,
-            width = count / DVI__LANES * DVI__LANES < most ? count / DVI__LANES * DVI__LANES : most;
+            whole = count / DVI__LANES * DVI__LANES, width = whole < most ? whole : most;
   return width >= LEAST ? width : 0;
-}
-
-/* Tell whether all elements of a unit add to one entry, which tiles do by halves. */
-static int unit_folds(const dvi__entries *entries, int first)
-{
-  const dvi__track minor = dvi__track_of(&entries->minor, first);
-  if (minor.list != NULL || entries->scale == 0) return minor.list == NULL && minor.stride == 0;
-  const dvi__track major = dvi__track_of(&entries->major, first);
-  return major.list == NULL && minor.stride + entries->scale * major.stride == 0;
-}
-
-static int target_folds(const dvi__part *part, const dvi__destination *target)
-{
-  const int all = part->kernel->elements;
-  for (int m = 0; m <= target->mirrored; m++)
-    for (int first = 0; first < all; first += DVI__UNIT)
-      if (dvi__unit_size(all, first) > 1 && unit_folds(m ? &target->mirror : &target->entry, first))
-        return 1;
-  return 0;
-}
-
-int dvi__part_takes_points(const dvi__part *part)
-{
-  int folds = 0;
-  for (int k = 0; k < part->target_count; k++) folds |= target_folds(part, &part->target[k]);
-  return !part->large && !folds;
 }
 
 DVI__EXPR_INLINE void fill_row(int width, double value, double *restrict row)
@@ -79,12 +55,41 @@ DVI__EXPR_INLINE void fill_row(int width, double value, double *restrict row)
 }
 
 /* Add a row, or store it, added to zero, which gives the bits of tiles. */
-DVI__EXPR_INLINE void add_row(int width, int sets, double sign, const double *restrict row,
-                              double *restrict to)
+DVI__EXPR_INLINE void add_row(const int block, int width, int sets, double sign,
+                              const double *restrict row, double *restrict to)
 {
-  for (int first = 0; first < width; first += DVI__LANES)
-    DVI__EXPR_INDEPENDENT for (int k = first; k < first + DVI__LANES; k++)
+  for (int first = 0; first < width; first += block)
+    DVI__EXPR_INDEPENDENT for (int k = first; k < first + block; k++)
         to[k] = (sets ? 0.0 : to[k]) + sign * row[k];
+}
+
+/* Tell whether all elements of a unit add to one entry. */
+DVI__EXPR_INLINE int unit_folds(const dvi__entries *entries, const unit *u)
+{
+  const dvi__track minor = dvi__track_of(&entries->minor, u->first);
+  if (u->elements == 1 || minor.list != NULL) return 0;
+  if (entries->scale == 0) return minor.stride == 0;
+  const dvi__track major = dvi__track_of(&entries->major, u->first);
+  return major.list == NULL && minor.stride + entries->scale * major.stride == 0;
+}
+
+/* Add the sum of the elements' rows, `pitch` below each other, which is made by halves as tiles do
+ * (fold_row). */
+DVI__EXPR_INLINE void add_fold(int elements, int width, double sign, ptrdiff_t pitch,
+                               const double *restrict row, double *restrict to)
+{
+  for (int first = 0; first < width; first += DVI__LANES) {
+    double sum[DVI__UNIT][DVI__LANES];
+    int loaded = 0;
+    do memcpy(sum[loaded], row - loaded * pitch + first, sizeof sum[0]);
+    while (++loaded < elements);
+    for (int left = elements; left > 1; left = (left + 1) / 2) {
+      const int half = (left + 1) / 2;
+      for (int e = 0; e < left - half; e++)
+        for (int k = 0; k < DVI__LANES; k++) sum[e][k] += sum[half + e][k];
+    }
+    for (int k = 0; k < DVI__LANES; k++) to[first + k] += sign * sum[0][k];
+  }
 }
 
 /* Add one output of all elements of a unit to its entries. */
@@ -94,13 +99,21 @@ DVI__EXPR_INLINE void add_output(const dvi__part *part, const dvi__destination *
 {
   const double sign = target->negative ? -1.0 : 1.0;
   const ptrdiff_t output = scratch_rows(&part->program) + target->output;
+  if (unit_folds(entries, u)) {
+    add_fold(u->elements, at->width, sign, (ptrdiff_t)part->program.output_count * at->width,
+             registers_of(part, u, 0, at->width) + output * at->width,
+             result + dvi__entry_at(entries, u->first) * at->count + at->point);
+    return;
+  }
   for (int e = 0; e < u->elements; e++) {
     const double *row = registers_of(part, u, e, at->width) + output * at->width;
     double *to = result + dvi__entry_at(entries, u->first + e) * at->count + at->point;
     if (target->sets)
-      add_row(at->width, 1, sign, row, to);
+      add_row(DVI__LANES, at->width, 1, sign, row, to);
+    else if (at->width % DVI__LONG_BLOCK == 0)
+      add_row(DVI__LONG_BLOCK, at->width, 0, sign, row, to);
     else
-      add_row(at->width, 0, sign, row, to);
+      add_row(DVI__LANES, at->width, 0, sign, row, to);
   }
 }
 

@@ -410,7 +410,6 @@ dvi_status dvi__part_plan(dvi__part *part)
   part->unit = dvi__unit_size(all, 0);
   part->lanes = lanes_for(part, SMALL);
   part->large = part->lanes < part->unit;
-  part->takes_points = dvi__part_takes_points(part);
   if (!part->large) return DVI_OK;
   part->lanes = lanes_for(part, MIDDLE);
   const int least = dvi__row_width(part->unit);
@@ -433,7 +432,7 @@ static void run_part(const dvi__part *part, int count, const double *const *x,
                      double *const *result)
 {
   tile shape = shape_of(part, count);
-  if (part->takes_points) shape.point = dvi__part_run_points(part, count, x, result);
+  if (!part->large) shape.point = dvi__part_run_points(part, count, x, result);
   if (shape.point == count) return;
   if (part->kernel->elements == 1) part_clear(part, shape.point, count, result);
   if (part->large)

@@ -138,17 +138,11 @@ static void lanes_begin(lanes *own, int n, size_t last, const dvi__members *m, d
   lanes_close_up(own);
 }
 
-/* End a lane's iteration with this one. */
-static void lanes_end_one(lanes *own, dvi__members *m, int lane, int iteration)
+/* Count a lane's iterations, which end with this one. */
+static void lanes_count_one(const lanes *own, dvi__members *m, int lane, int iteration)
 {
-  dvi__action_members *at = &own->members;
+  const dvi__action_members *at = &own->members;
   const int k = at->member[lane];
-  own->going[lane] = 0;
-  if (own->verdict[lane] == DVI__STALLED) {
-    m->left[k] = 1;
-    return;
-  }
-  dvi__action_members_keep(at, lane);
   m->residuals[k] += iteration;
   m->gradients[k] += (long)iteration * dvi__action_nodes(at->action);
   m->fixed[k]++;
@@ -158,19 +152,24 @@ static void lanes_end_one(lanes *own, dvi__members *m, int lane, int iteration)
  * not be iterated any more. */
 static int lanes_test(lanes *own, dvi__members *m, int iteration, int *stalled)
 {
-  const dvi__action_members *at = &own->members;
-  int ended = 0;
+  dvi__action_members *at = &own->members;
+  int done = 0, lost = 0;
   dvi__test_corrections(at->width, at->change, at->largest, &own->criteria, &own->histories,
                         own->verdict);
   for (int lane = 0; lane < at->width; lane++) {
-    own->ended[ended] = lane;
-    ended += own->going[lane] & (own->verdict[lane] != DVI__GO_ON);
+    own->ended[done] = lane;
+    done += own->going[lane] & (own->verdict[lane] == DVI__CONVERGED);
   }
-  for (int i = 0; i < ended; i++) {
-    lanes_end_one(own, m, own->ended[i], iteration);
-    *stalled |= own->verdict[own->ended[i]] == DVI__STALLED;
+  for (int lane = 0; lane < at->width; lane++) {
+    const int stalls = own->going[lane] & (own->verdict[lane] == DVI__STALLED);
+    if (stalls) m->left[at->member[lane]] = 1;
+    lost += stalls;
+    own->going[lane] &= own->verdict[lane] == DVI__GO_ON;
   }
-  return ended;
+  dvi__action_members_keep(at, done, own->ended);
+  for (int i = 0; i < done; i++) lanes_count_one(own, m, own->ended[i], iteration);
+  *stalled = lost > 0;
+  return done + lost;
 }
 
 /* Leave the members whose iteration is cut short. */
@@ -197,10 +196,20 @@ static void lanes_iterate(lanes *own, dvi__members *m)
   lanes_leave(own, m);
 }
 
+/* Keep the unknowns, or what they are made of, and find the ends. */
+static void lanes_end(lanes *own, size_t n, int late, dvi__members *m)
+{
+  const size_t count = (size_t)m->count;
+  double *last = memory_row(m, DVI__LAST_Y), *is_late = memory_row(m, DVI__LATE);
+  if (late) memcpy(last, m->p, n * count * sizeof(double));
+  dvi__action_members_ends(&own->members, late ? NULL : last);
+  for (size_t k = 0; k < count; k++) is_late[k] = late;
+}
+
 /* Advance the state and the memory by a step that fixed point iteration has solved. */
 static void lanes_advance(const lanes *own, size_t n, dvi__members *m, double h)
 {
-  static const size_t cleared[] = {DVI__NEWTON_STEPS, DVI__NEWTON_WAIT, DVI__LATE};
+  static const size_t cleared[] = {DVI__NEWTON_STEPS, DVI__NEWTON_WAIT};
   const dvi__action_members *at = &own->members;
   const size_t count = (size_t)m->count;
   double *last_h = memory_row(m, DVI__LAST_H);
@@ -209,7 +218,7 @@ static void lanes_advance(const lanes *own, size_t n, dvi__members *m, double h)
   dvi__lanes_add_scaled(n * count, 1.0, at->dp, m->p, m->p_compensation);
   for (size_t k = 0; k < count; k++) dvi__add_compensated(m->t + k, m->t_compensation + k, h);
   for (size_t k = 0; k < count; k++) last_h[k] = h;
-  for (int i = 0; i < 3; i++) memset(memory_row(m, cleared[i]), 0, count * sizeof(double));
+  for (int i = 0; i < 2; i++) memset(memory_row(m, cleared[i]), 0, count * sizeof(double));
 }
 
 void dvi__element_step_lanes(dvi__stepper *self, dvi__members *m, double h)
@@ -220,6 +229,6 @@ void dvi__element_step_lanes(dvi__stepper *self, dvi__members *m, double h)
   const size_t last = own->members.chord != NULL ? DVI__LAST_Y : dvi__element_forces(self);
   lanes_begin(own, self->system->n, last, m, h, last_h);
   lanes_iterate(own, m);
-  dvi__action_members_ends(&own->members, memory_row(m, DVI__LAST_Y));
+  lanes_end(own, (size_t)self->system->n, ((const dvi__element *)self->own)->late_paths, m);
   lanes_advance(own, (size_t)self->system->n, m, h);
 }

@@ -117,31 +117,102 @@ BY(2)
 BY(4)
 BY(8)
 
+/* ---- inverses ---- */
+
+/* Least magnitude of a pivot beside the largest entry of its row. Six digits are lost then. */
+static const double least_pivot = 1e-6;
+
+/* Tell whether the pivots of row p are sound, before that row is eliminated. `largest` is that of
+ * the row at first. */
+INLINE void test_pivots(size_t width, const double *restrict pivot, const double *restrict largest,
+                        char *restrict sound)
+{
+  for (size_t k = 0; k < width; k++) sound[k] &= fabs(pivot[k]) >= least_pivot * largest[k];
+}
+
+/* Eliminate by row p (Gauss and Jordan, in place). */
+INLINE void eliminate(size_t n, size_t width, size_t p, double *A)
+{
+  double *restrict pivot = A + (p * n + p) * width;
+  for (size_t k = 0; k < width; k++) pivot[k] = 1.0 / pivot[k];
+  for (size_t j = 0; j < n; j++) {
+    double *restrict entry = A + (j * n + p) * width;
+    for (size_t k = 0; k < width && j != p; k++) entry[k] *= pivot[k];
+  }
+  for (size_t i = 0; i < n; i++) {
+    if (i == p) continue;
+    double *restrict factor = A + (p * n + i) * width;
+    for (size_t j = 0; j < n; j++) {
+      const double *restrict from = A + (j * n + p) * width;
+      double *restrict to = A + (j * n + i) * width;
+      for (size_t k = 0; k < width && j != p; k++) to[k] -= factor[k] * from[k];
+    }
+    for (size_t k = 0; k < width; k++) factor[k] = -(factor[k] * pivot[k]);
+  }
+}
+
+/* Eliminate in one matrix alone, whose rows are the lanes then. */
+INLINE void eliminate_alone(size_t n, size_t p, double *A)
+{
+  double *restrict factor = A + p * n;
+  const double pivot = 1.0 / factor[p];
+  for (size_t j = 0; j < n; j++) {
+    double *restrict column = A + j * n;
+    if (j == p) continue;
+    const double from = column[p] * pivot;
+    for (size_t i = 0; i < n; i++) column[i] -= factor[i] * from;
+    column[p] = from;
+  }
+  for (size_t i = 0; i < n; i++) factor[i] = -(factor[i] * pivot);
+  factor[p] = pivot;
+}
+
+INLINE void inverse(size_t n, size_t width, double *A, double *largest, char *sound)
+{
+  memset(largest, 0, n * width * sizeof(double));
+  memset(sound, 1, width);
+  for (size_t e = 0; e < n * n; e++)
+    larger_magnitudes(width, A + e * width, largest + e % n * width);
+  for (size_t p = 0; p < n; p++) {
+    test_pivots(width, A + (p * n + p) * width, largest + p * width, sound);
+    if (width == 1)
+      eliminate_alone(n, p, A);
+    else
+      eliminate(n, width, p, A);
+  }
+}
+
 /* ---- instruction sets ---- */
 
 typedef struct level {
   void (*stages)(const dvi__members_chord *c);
   void (*residual)(const dvi__members_chord *c);
   void (*invert)(const dvi__members_chord *c);
+  void (*inverse)(size_t n, size_t width, double *A, double *largest, char *sound);
   void (*correct)(const dvi__members_chord *c);
 } level;
 
-#define LEVEL(suffix, target, width)                                \
-  target static void stages_##suffix(const dvi__members_chord *c)   \
-  {                                                                 \
-    stages_by##width(c);                                            \
-  }                                                                 \
-  target static void residual_##suffix(const dvi__members_chord *c) \
-  {                                                                 \
-    residual_by##width(c);                                          \
-  }                                                                 \
-  target static void invert_##suffix(const dvi__members_chord *c)   \
-  {                                                                 \
-    invert(c);                                                      \
-  }                                                                 \
-  target static void correct_##suffix(const dvi__members_chord *c)  \
-  {                                                                 \
-    correct_by##width(c);                                           \
+#define LEVEL(suffix, target, by)                                                         \
+  target static void stages_##suffix(const dvi__members_chord *c)                         \
+  {                                                                                       \
+    stages_by##by(c);                                                                     \
+  }                                                                                       \
+  target static void residual_##suffix(const dvi__members_chord *c)                       \
+  {                                                                                       \
+    residual_by##by(c);                                                                   \
+  }                                                                                       \
+  target static void invert_##suffix(const dvi__members_chord *c)                         \
+  {                                                                                       \
+    invert(c);                                                                            \
+  }                                                                                       \
+  target static void inverse_##suffix(size_t n, size_t width, double *A, double *largest, \
+                                      char *sound)                                        \
+  {                                                                                       \
+    inverse(n, width, A, largest, sound);                                                 \
+  }                                                                                       \
+  target static void correct_##suffix(const dvi__members_chord *c)                        \
+  {                                                                                       \
+    correct_by##by(c);                                                                    \
   }
 
 LEVEL(baseline, , 2)
@@ -152,10 +223,10 @@ LEVEL(avx512, __attribute__((target("fma,avx512f,avx512dq,avx512vl"))), 8)
 
 /* Levels in the order of num/simd/lanes.c. */
 static const level levels[] = {
-    {stages_baseline, residual_baseline, invert_baseline, correct_baseline},
+    {stages_baseline, residual_baseline, invert_baseline, inverse_baseline, correct_baseline},
 #ifdef __x86_64__
-    {stages_avx2, residual_avx2, invert_avx2, correct_avx2},
-    {stages_avx512, residual_avx512, invert_avx512, correct_avx512},
+    {stages_avx2, residual_avx2, invert_avx2, inverse_avx2, correct_avx2},
+    {stages_avx512, residual_avx512, invert_avx512, inverse_avx512, correct_avx512},
 #endif
 };
 
@@ -177,6 +248,11 @@ void dvi__members_chord_residual(const dvi__members_chord *chord)
 void dvi__members_chord_invert(const dvi__members_chord *chord)
 {
   level_in_use()->invert(chord);
+}
+
+void dvi__members_inverse(int n, int width, double *matrix, double *largest, char *sound)
+{
+  level_in_use()->inverse((size_t)n, (size_t)width, matrix, largest, sound);
 }
 
 void dvi__members_chord_correct(const dvi__members_chord *chord)

@@ -31,6 +31,11 @@ void dvi__members_chord_residual(const dvi__members_chord *chord);
 /* Multiply R by the inverse of the mass. */
 void dvi__members_chord_invert(const dvi__members_chord *chord);
 
+/* Invert the matrices of members, [n*n*width] by columns, in place. sound[width] tells for each
+ * whether elimination without exchanges of rows was sound, as it is for positive matrices. The
+ * others are spoilt. largest [n*width] is work. One matrix alone is one of width 1. */
+void dvi__members_inverse(int n, int width, double *matrix, double *largest, char *sound);
+
 /* Replace R by the correction, and correct Y by it. A change is infinite where Y is not a
  * number. */
 void dvi__members_chord_correct(const dvi__members_chord *chord);

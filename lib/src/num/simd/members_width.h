@@ -27,13 +27,29 @@ INLINE void NAME(row)(int terms, int lanes, const double *matrix, int width, con
   *out = terms >= 8 ? (sum[0] + sum[1]) + (sum[2] + sum[3]) : sum[0];
 }
 
-/* Multiply for WIDTH members, from member m on, of coordinate i. */
-INLINE void NAME(product_at)(int terms, int lanes, int rows, const double *matrix, int width,
+/* Give row j of the matrix times g, as `row` does, for up to eight terms in registers. */
+INLINE void NAME(known_row)(const int terms, int lanes, const double *row, const NAME(vector) * g,
+                            NAME(vector) * out)
+{
+  NAME(vector) sum = {0}, four[4];
+  for (int k = 0; k < 4 && terms == 8; k++)
+    four[k] = g[k] * row[k * lanes] + g[k + 4] * row[(k + 4) * lanes];
+  for (int k = 0; k < terms && terms < 8; k++) sum += g[k] * row[k * lanes];
+  *out = terms == 8 ? (four[0] + four[1]) + (four[2] + four[3]) : sum;
+}
+
+/* Multiply for WIDTH members, from member m on, of coordinate i. Eight terms are read once. */
+INLINE void NAME(product_at)(const int terms, int lanes, int rows, const double *matrix, int width,
                              const double *x, double *out)
 {
+  NAME(vector) g[8];
+  for (int k = 0; k < 8 && terms == 8; k++) NAME(load)(x + (size_t)k * (size_t)width, &g[k]);
   for (int j = 0; j < rows; j++) {
     NAME(vector) sum;
-    NAME(row)(terms, lanes, matrix + j, width, x, &sum);
+    if (terms == 8)
+      NAME(known_row)(8, lanes, matrix + j, g, &sum);
+    else
+      NAME(row)(terms, lanes, matrix + j, width, x, &sum);
     NAME(store)(out + (size_t)j * (size_t)width, &sum, WIDTH);
   }
 }
@@ -42,9 +58,14 @@ INLINE int NAME(product)(int n, int terms, int lanes, int rows, const double *ma
                          const double *x, double *out, int m)
 {
   for (; m + WIDTH <= width; m += WIDTH)
-    for (size_t i = 0; i < (size_t)n; i++) NAME(product_at)
-  (terms, lanes, rows, matrix, width, x + i * (size_t)terms * (size_t)width + m,
-   out + i * (size_t)rows * (size_t)width + m);
+    for (size_t i = 0; i < (size_t)n; i++) {
+      const double *from = x + i * (size_t)terms * (size_t)width + m;
+      double *to = out + i * (size_t)rows * (size_t)width + m;
+      if (terms == 8)
+        NAME(product_at)(8, lanes, rows, matrix, width, from, to);
+      else
+        NAME(product_at)(terms, lanes, rows, matrix, width, from, to);
+    }
   return m;
 }
 
@@ -91,17 +112,6 @@ INLINE int NAME(begin)(const dvi__members_fixed_point *s, int m)
       }
     }
   return m;
-}
-
-/* Give row j of the matrix times g, as `row` does, for up to eight terms in registers. */
-INLINE void NAME(known_row)(const int terms, int lanes, const double *row, const NAME(vector) * g,
-                            NAME(vector) * out)
-{
-  NAME(vector) sum = {0}, four[4];
-  for (int k = 0; k < 4 && terms == 8; k++)
-    four[k] = g[k] * row[k * lanes] + g[k + 4] * row[(k + 4) * lanes];
-  for (int k = 0; k < terms && terms < 8; k++) sum += g[k] * row[k * lanes];
-  *out = terms == 8 ? (four[0] + four[1]) + (four[2] + four[3]) : sum;
 }
 
 /* Iterate for WIDTH members of one coordinate. All forces are weighed, then the stages move. Up to

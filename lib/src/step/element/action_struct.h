@@ -112,7 +112,7 @@ struct dvi__action {
 
 /* Largest number of coordinates for which the chord's inverse is cheaper than solving for each of
  * the s functions. */
-enum { DVI__CHORD_INVERSE = 8 };
+enum { DVI__CHORD_INVERSE = 16 };
 
 /* Allocate and fill all tables of the space (table.c). */
 dvi_status dvi__action_fill_tables(dvi__action *action);

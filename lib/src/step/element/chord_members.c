@@ -7,7 +7,6 @@
 #include "step/element/members.h"
 #include "core/memory.h"
 #include "core/status.h"
-#include "num/linear.h"
 #include "num/simd/members.h"
 #include "num/simd/members_chord.h"
 #include "space/trial.h"
@@ -19,9 +18,8 @@ typedef struct middle_mass {
   double psi[DVI_DEGREE_MAX], dpsi[DVI_DEGREE_MAX]; /* functions in the middle of the path */
   double *t, *q, *v;                                /* [n*capacity] points */
   double *L_qq, *L_qv, *L_vv;                       /* [entries*capacity] */
-  dvi__linear *linear;
-  double *values, *column; /* [entries], [n] of one member */
-  double *inverse;         /* [n*n*capacity] */
+  double *inverse;                                  /* [n*n*capacity] */
+  char *sound;                                      /* [capacity] the inverse is one */
 } middle_mass;
 
 struct dvi__chord_members {
@@ -45,16 +43,6 @@ int dvi__action_has_chord_members(const dvi__action *a)
 
 /* ---- create ---- */
 
-/* Factor a mass of ones, so that no step takes memory. */
-static dvi_status mass_make_room(const dvi__action *a, middle_mass *mass)
-{
-  const dvi__pattern *vv = &a->system->vv;
-  DVI_TRY(dvi__linear_create(vv, DVI__LINEAR_AUTO, NULL, &mass->linear));
-  for (int j = 0; j < vv->columns; j++)
-    for (int e = vv->start[j]; e < vv->start[j + 1]; e++) mass->values[e] = vv->row[e] == j;
-  return dvi__linear_factor(mass->linear, mass->values);
-}
-
 static dvi_status mass_create(const dvi__action *a, size_t capacity, middle_mass *mass)
 {
   const dvi_system *system = a->system;
@@ -69,13 +57,12 @@ static dvi_status mass_create(const dvi__action *a, size_t capacity, middle_mass
   mass->L_qq = DVI_NEW(double, qq *capacity);
   mass->L_qv = DVI_NEW(double, qv *capacity);
   mass->L_vv = DVI_NEW(double, vv *capacity);
-  mass->values = DVI_NEW(double, vv);
-  mass->column = DVI_NEW(double, n);
   mass->inverse = DVI_NEW(double, n *n *capacity);
-  if (!mass->t || !mass->q || !mass->v || !mass->L_qq || !mass->L_qv || !mass->L_vv ||
-      !mass->values || !mass->column || !mass->inverse)
-    return dvi__fail(DVI_NO_MEMORY, "action: no memory for %zu members", capacity);
-  return mass_make_room(a, mass);
+  mass->sound = DVI_NEW(char, capacity);
+  if (mass->t && mass->q && mass->v && mass->L_qq && mass->L_qv && mass->L_vv && mass->inverse &&
+      mass->sound)
+    return DVI_OK;
+  return dvi__fail(DVI_NO_MEMORY, "action: no memory for %zu members", capacity);
 }
 
 dvi_status dvi__chord_members_create(dvi__action_members *m, size_t capacity)
@@ -98,12 +85,12 @@ void dvi__chord_members_clear(dvi__action_members *m)
 {
   struct dvi__chord_members *c = m->chord;
   if (c == NULL) return;
-  double *const owned[] = {
-      c->q0,        c->p0,        c->Y,         c->R,           c->rows,        c->Q,
-      c->V,         c->L_q,       c->L_v,       c->mass.t,      c->mass.q,      c->mass.v,
-      c->mass.L_qq, c->mass.L_qv, c->mass.L_vv, c->mass.values, c->mass.column, c->mass.inverse};
+  double *const owned[] = {c->q0,        c->p0,        c->Y,         c->R,
+                           c->rows,      c->Q,         c->V,         c->L_q,
+                           c->L_v,       c->mass.t,    c->mass.q,    c->mass.v,
+                           c->mass.L_qq, c->mass.L_qv, c->mass.L_vv, c->mass.inverse};
   for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) dvi__release(owned[i]);
-  dvi__linear_destroy(&c->mass.linear);
+  dvi__release(c->mass.sound);
   dvi__release(c);
   m->chord = NULL;
 }
@@ -162,21 +149,20 @@ static void find_middles(const dvi__action_members *m)
   }
 }
 
-/* Invert the mass of one lane. One that cannot be factored ends its iteration by NaN. */
-static void invert_mass(const dvi__action_members *m, size_t lane)
+/* Invert the masses. One that needs exchanges ends the iteration of its lane by NaN. */
+static void invert_masses(const dvi__action_members *m)
 {
   const middle_mass *mass = &m->chord->mass;
+  const dvi__pattern *vv = &m->action->system->vv;
   const size_t width = (size_t)m->width, n = (size_t)m->action->n;
-  const size_t entries = (size_t)dvi__pattern_entries(&m->action->system->vv);
-  for (size_t e = 0; e < entries; e++) mass->values[e] = mass->L_vv[e * width + lane];
-  const int factored = dvi__linear_factor(mass->linear, mass->values) == DVI_OK;
-  for (size_t j = 0; j < n; j++) {
-    memset(mass->column, 0, n * sizeof(double));
-    mass->column[j] = 1;
-    if (factored) dvi__linear_solve(mass->linear, mass->column);
-    for (size_t i = 0; i < n; i++)
-      mass->inverse[(j * n + i) * width + lane] = factored ? mass->column[i] : (double)NAN;
-  }
+  memset(mass->inverse, 0, n * n * width * sizeof(double));
+  for (size_t j = 0; j < n; j++)
+    for (int e = vv->start[j]; e < vv->start[j + 1]; e++)
+      memcpy(mass->inverse + (j * n + (size_t)vv->row[e]) * width, mass->L_vv + (size_t)e * width,
+             width * sizeof(double));
+  dvi__members_inverse(m->action->n, m->width, mass->inverse, mass->q, mass->sound);
+  for (size_t lane = 0; lane < width; lane++)
+    if (!mass->sound[lane]) mass->inverse[lane] = (double)NAN;
 }
 
 static dvi_status prepare_masses(const dvi__action_members *m)
@@ -185,7 +171,7 @@ static dvi_status prepare_masses(const dvi__action_members *m)
   find_middles(m);
   DVI_TRY(dvi__velocity_hessians(m->evaluator, m->width, mass->t, mass->q, mass->v, mass->L_qq,
                                  mass->L_qv, mass->L_vv));
-  for (int lane = 0; lane < m->width; lane++) invert_mass(m, (size_t)lane);
+  invert_masses(m);
   return DVI_OK;
 }
 

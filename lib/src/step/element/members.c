@@ -7,6 +7,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "num/simd/members.h"
+#include "system/evaluate/untested.h"
 
 int dvi__action_has_members(const dvi__action *a)
 {
@@ -232,8 +233,8 @@ dvi_status dvi__action_members_iterate(dvi__action_members *m)
 {
   if (m->chord != NULL) return dvi__chord_members_iterate(m);
   DVI_TRY(m->kinetic != NULL ? members_evaluate_stages(m)
-                             : dvi__potentials_gradient(m->evaluator, m->action->r * m->width, m->t,
-                                                        m->Q, m->force));
+                             : dvi__potentials_gradient_untested(
+                                   m->evaluator, m->action->r * m->width, m->t, m->Q, m->force));
   const dvi__members_fixed_point iteration = members_fixed_point(m);
   if (m->action->preconditioner != NULL)
     dvi__preconditioner_iterate_members(m);
@@ -242,18 +243,27 @@ dvi_status dvi__action_members_iterate(dvi__action_members *m)
   return DVI_OK;
 }
 
-void dvi__action_members_keep(dvi__action_members *m, int lane)
+/* Keep rows of numbers of these lanes. All lanes are kept as a whole if they hold all members. */
+static void keep_rows(const dvi__action_members *m, size_t rows, int lanes, const int *lane,
+                      const double *x, double *kept)
 {
-  if (m->chord != NULL) {
-    dvi__chord_members_keep(m, lane);
+  const size_t count = (size_t)m->count;
+  if (lanes == m->count) {
+    memcpy(kept, x, rows * count * sizeof(double));
     return;
   }
-  const size_t rows = (size_t)m->action->n * (size_t)m->action->fixed_point.stages,
-               count = (size_t)m->count;
-  double *kept = m->forces + m->member[lane];
-  for (size_t i = 0; i < rows; i++) kept[i * count] = m->force[members_row(m, i) + (size_t)lane];
-  for (size_t i = 0; i < rows && m->kept_Q != NULL; i++)
-    m->kept_Q[i * count + (size_t)m->member[lane]] = m->Q[members_row(m, i) + (size_t)lane];
+  for (size_t i = 0; i < rows; i++)
+    for (int k = 0; k < lanes; k++)
+      kept[i * count + (size_t)m->member[lane[k]]] = x[members_row(m, i) + (size_t)lane[k]];
+}
+
+void dvi__action_members_keep(dvi__action_members *m, int lanes, const int *lane)
+{
+  const size_t rows = (size_t)m->action->n * (size_t)m->action->fixed_point.stages;
+  for (int k = 0; k < lanes && m->chord != NULL; k++) dvi__chord_members_keep(m, lane[k]);
+  if (m->chord != NULL) return;
+  keep_rows(m, rows, lanes, lane, m->force, m->forces);
+  if (m->kept_Q != NULL) keep_rows(m, rows, lanes, lane, m->Q, m->kept_Q);
 }
 
 /* Take g and a of all members apart, with p0 - sum_j a_j. */
@@ -272,13 +282,11 @@ static void members_part_stages(dvi__action_members *m)
   }
 }
 
-/* Find the path and the ends as dvi__action_fixed_point_path and dvi__action_fixed_point_ends. */
-void dvi__action_members_ends(dvi__action_members *m, double *Y)
+/* Find the path as dvi__action_fixed_point_path. */
+static void members_path(const dvi__action_members *m, double *Y)
 {
   const dvi__action *a = m->action;
   const size_t n = (size_t)a->n, s = (size_t)a->s, count = (size_t)m->count;
-  const int has_velocities = m->kinetic != NULL;
-  if (m->chord != NULL) return;
   dvi__members_product(a->n, a->fixed_point.stages, a->path_lanes, a->s, a->fixed_point.path,
                        m->count, m->forces, Y);
   for (size_t i = 0; i < n * s; i++) {
@@ -287,6 +295,15 @@ void dvi__action_members_ends(dvi__action_members *m, double *Y)
       Y[i * count + k] = start[k] * a->straight[i % s] +
                          a->fixed_point.factor[i / s] * Y[i * count + k];
   }
+}
+
+/* Find the path and the ends as dvi__action_fixed_point_ends. */
+void dvi__action_members_ends(dvi__action_members *m, double *Y)
+{
+  const dvi__action *a = m->action;
+  const int has_velocities = m->kinetic != NULL;
+  if (m->chord != NULL) return;
+  if (Y != NULL) members_path(m, Y);
   if (has_velocities) members_part_stages(m);
   dvi__members_ends_of(&(dvi__members_ends){.n = a->n,
                                             .stages = a->r,

@@ -67,13 +67,14 @@ void dvi__action_members_pack(const dvi__action_members *members, int rows, int 
 /* Make one iteration of every lane. */
 dvi_status dvi__action_members_iterate(dvi__action_members *members);
 
-/* Keep the forces of the last iteration, or the path, of the member in this lane, which is done. */
-void dvi__action_members_keep(dvi__action_members *members, int lane);
+/* Keep the forces of the last iteration, or the paths, of the members in lane[lanes], which are
+ * done. */
+void dvi__action_members_keep(dvi__action_members *members, int lanes, const int *lane);
 
 /* Give the unknowns Y [n*s*count] and the increments dq + dq_low, dp of all members from the forces
  * kept, which then lose the part of a preconditioner's potentials, as those of dvi__action_forces.
- * With `chord` the paths are kept, and Y is not written. The numbers of members of which nothing is
- * kept mean nothing. */
+ * Y may be NULL. With `chord` the paths are kept, and Y is not written. The numbers of members of
+ * which nothing is kept mean nothing. */
 void dvi__action_members_ends(dvi__action_members *members, double *Y);
 
 /* The parts of these functions for an iteration on paths (chord_members.c). */

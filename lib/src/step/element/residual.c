@@ -6,6 +6,7 @@
 #include "step/element/fixed_point.h"
 #include "core/status.h"
 #include "num/simd/lanes.h"
+#include "num/simd/members_chord.h"
 #include "space/trial.h"
 #include "system/dynamics/one_form.h"
 
@@ -98,6 +99,19 @@ void dvi__action_ends(const dvi__action *a, const double *Y, double *dq, double 
 
 /* ---- chord, the kinetic part of the Jacobian ---- */
 
+/* Invert L_vv by elimination without exchanges, which serves positive matrices. */
+static int invert_positive(dvi__action *a)
+{
+  const dvi__pattern *vv = &a->system->vv;
+  char sound;
+  memset(a->chord_inverse, 0, (size_t)a->n * (size_t)a->n * sizeof(double));
+  for (int j = 0; j < a->n; j++)
+    for (int e = vv->start[j]; e < vv->start[j + 1]; e++)
+      a->chord_inverse[j * a->n + vv->row[e]] = a->middle_vv[e];
+  dvi__members_inverse(a->n, 1, a->chord_inverse, a->middle[0], &sound);
+  return sound;
+}
+
 static void invert_chord(dvi__action *a)
 {
   const size_t n = (size_t)a->n;
@@ -116,6 +130,7 @@ dvi_status dvi__action_prepare_chord(dvi__action *a, const double *Y)
   for (int i = 0; i < a->n; i++) a->middle[0][i] += a->q0[i];
   DVI_TRY(dvi__velocity_hessian(a->evaluator, middle, a->middle[0], a->middle[1], &L_vv));
   memcpy(a->middle_vv, L_vv, (size_t)dvi__pattern_entries(&a->system->vv) * sizeof(double));
+  if (a->chord_inverse != NULL && invert_positive(a)) return DVI_OK;
   DVI_TRY(dvi__linear_factor(a->chord, a->middle_vv));
   if (a->chord_inverse != NULL) invert_chord(a);
   return DVI_OK;
