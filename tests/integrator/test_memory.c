@@ -1,7 +1,7 @@
 /* labels: unit */
-/* Explicit methods take at most twelve numbers of memory for each coordinate: three of q and p, two
- * of their compensations, and two of the forces, at the present state, before the last step and
- * after the next one. All else is made when it is first asked for. */
+/* Verlet's method and its compositions take at most twelve numbers of memory for each coordinate:
+ * three of q and p, two of their compensations, and two of the forces, at the present state, before
+ * the last step and after the next one. All else is made when it is first asked for. */
 #include "support/heap.h"
 #include "support/runs.h"
 #include "support/suite.h"

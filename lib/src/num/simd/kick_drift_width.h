@@ -31,7 +31,13 @@ INLINE void NAME(fetch)(const dvi__kick_drift *l, size_t i)
     __builtin_prefetch((const void *)((uintptr_t)(written[k] + i) + FETCH_AHEAD), 1);
 }
 
-/* Only the sign bit of a product of 0 with a finite number may be set. */
+/* Unite the bits of products of 0 with some numbers. Only the sign bit may be set if all numbers
+ * are finite. */
+INLINE void NAME(add_doubts)(const NAME(mask) * products, int64_t *doubt)
+{
+  for (int k = 0; k < WIDTH; k++) *doubt |= (*products)[k];
+}
+
 INLINE size_t NAME(kick_drift)(const dvi__kick_drift *whole, size_t i, const int kicks,
                                const dvi__division by, int64_t *doubt)
 {
@@ -57,7 +63,7 @@ INLINE size_t NAME(kick_drift)(const dvi__kick_drift *whole, size_t i, const int
     NAME(store)(l.to.q + i, &q, WIDTH);
     NAME(store)(l.to.q_compensation + i, &q_compensation, WIDTH);
   }
-  for (int k = 0; k < WIDTH; k++) *doubt |= doubts[k];
+  NAME(add_doubts)(&doubts, doubt);
   return i;
 }
 
@@ -93,19 +99,18 @@ INLINE void NAME(store_past)(double *out, const NAME(vector) * x, const int in_p
 #endif
 }
 
-/* `doubt` stays 0 while all numbers are finite, because no other product with 0 is 0. */
 INLINE size_t NAME(last_kick)(const dvi__last_kick *whole, size_t i, const int past,
-                              const int in_pairs, double *doubt)
+                              const int in_pairs, int64_t *doubt)
 {
   const dvi__last_kick l = *whole;
-  NAME(vector) doubts = {0};
+  NAME(mask) doubts = {0};
   for (; i + WIDTH <= l.count; i += WIDTH) {
     NAME(vector) force, p, p_compensation;
     NAME(load)(l.force + i, &force);
     NAME(load)(l.from.p + i, &p);
     NAME(load)(l.from.p_compensation + i, &p_compensation);
     NAME(kick_by)(l.kick, &force, &p, &p_compensation);
-    doubts += 0 * p;
+    doubts |= (NAME(mask))(0 * p);
     if (!past) {
       NAME(store)(l.to.p + i, &p, WIDTH);
       NAME(store)(l.to.p_compensation + i, &p_compensation, WIDTH);
@@ -115,25 +120,25 @@ INLINE size_t NAME(last_kick)(const dvi__last_kick *whole, size_t i, const int p
     NAME(store_past)(l.to.p_compensation + i, &p_compensation, in_pairs);
     NAME(store_past)(l.force_to + i, &force, in_pairs);
   }
-  for (int k = 0; k < WIDTH; k++) *doubt += doubts[k];
+  NAME(add_doubts)(&doubts, doubt);
   return i;
 }
 
 /* Look at q, and store it. */
 INLINE size_t NAME(last_q)(const dvi__last_kick *whole, size_t i, const int past,
-                           const int in_pairs, double *doubt)
+                           const int in_pairs, int64_t *doubt)
 {
   const dvi__last_kick l = *whole;
-  NAME(vector) doubts = {0};
+  NAME(mask) doubts = {0};
   for (; i + WIDTH <= l.count; i += WIDTH) {
     NAME(vector) q, q_compensation;
     NAME(load)(l.from.q + i, &q);
-    doubts += 0 * q;
+    doubts |= (NAME(mask))(0 * q);
     if (!past) continue;
     NAME(load)(l.from.q_compensation + i, &q_compensation);
     NAME(store_past)(l.to.q + i, &q, in_pairs);
     NAME(store_past)(l.to.q_compensation + i, &q_compensation, in_pairs);
   }
-  for (int k = 0; k < WIDTH; k++) *doubt += doubts[k];
+  NAME(add_doubts)(&doubts, doubt);
   return i;
 }

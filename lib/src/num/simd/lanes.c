@@ -186,7 +186,7 @@ INLINE void add_scaled(int widest, size_t count, double factor, const double *x,
 }
 
 INLINE void last_kick_past(int widest, const dvi__last_kick *l, const int past, const int in_pairs,
-                           double *doubt)
+                           int64_t *doubt)
 {
   size_t i = 0, j = 0;
   if (widest == 8) {
@@ -208,14 +208,14 @@ INLINE int last_kick(int widest, const dvi__last_kick *l)
 {
   const uintptr_t all = (uintptr_t)l->to.q | (uintptr_t)l->to.p | (uintptr_t)l->to.q_compensation |
                         (uintptr_t)l->to.p_compensation | (uintptr_t)l->force_to;
-  double doubt = 0;
+  int64_t doubt = 0;
   if (!l->past)
     last_kick_past(widest, l, 0, 0, &doubt);
   else if (all % (2 * sizeof(double)) == 0)
     last_kick_past(widest, l, 1, 1, &doubt);
   else
     last_kick_past(widest, l, 1, 0, &doubt);
-  return doubt == 0;
+  return (doubt & INT64_MAX) == 0;
 }
 
 /* ---- instruction sets ---- */
