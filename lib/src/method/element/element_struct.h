@@ -93,8 +93,8 @@ dvi_status dvi__element_straight(dvi__stepper *self, const dvi__element_place *a
 /* Guess Y by the continued last path, or by a straight line without one. */
 dvi_status dvi__element_guess(dvi__stepper *self, const dvi__element_place *at, double *Y);
 
-/* Note for the next guess how the solved path of a step h, whose guess is known, bends away from the
- * continued one. */
+/* Note for the next guess how the solved path of a step h, whose guess is known, bends away from
+ * the continued one. */
 void dvi__element_note_bending(dvi__stepper *self, double h);
 
 /* Find Y of the solution that continues those of shorter steps. `whole` is the failure of the
