@@ -176,8 +176,8 @@ static void eliminate(int m, int k, double *A)
 /* Replace A [m*m] by its inverse. Returns the sign of its determinant, 0 if A is singular. */
 static int invert(int m, double *A)
 {
-  int exchanged[MOST_ROWS], sign = 1;
-  for (int k = 0; k < m; k++) {
+  int exchanged[MOST_ROWS] = {0}, sign = 1;
+  for (int k = 0; k < m && k < MOST_ROWS; k++) {
     const int row = exchanged[k] = largest_row(m, A + (size_t)k * (size_t)m, k);
     if (row != k) {
       swap_numbers(m, A + k, A + row, m);
@@ -188,7 +188,7 @@ static int invert(int m, double *A)
     if (pivot < 0) sign = -sign;
     eliminate(m, k, A);
   }
-  for (int k = m - 1; k >= 0; k--)
+  for (int k = m < MOST_ROWS ? m : MOST_ROWS; k-- > 0;)
     if (exchanged[k] != k)
       swap_numbers(m, A + (size_t)k * (size_t)m, A + (size_t)exchanged[k] * (size_t)m, 1);
   return sign;

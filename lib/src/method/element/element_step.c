@@ -99,6 +99,7 @@ static void element_count_memory(dvi__stepper *self, const dvi__element *own)
                           (size_t)dvi__pattern_entries(dvi__action_pattern(own->action));
   if (own->blocks != NULL)
     self->memory_count += DVI__FROZEN_POINT + dvi__blocks_numbers(own->blocks);
+  if (own->centred) self->memory_count += (size_t)dvi__action_unknowns(own->action);
 }
 
 static int element_allocate(dvi__stepper *self, dvi__element *own)
@@ -306,27 +307,7 @@ void dvi__element_put(dvi__element *own, const dvi__element_place *at, double h)
   own->newton.is_frozen = 0;
 }
 
-/* ---- guesses ---- */
-
-const double *dvi__element_last_path(const dvi__stepper *self)
-{
-  const dvi__element *own = self->own;
-  const double *memory = self->memory, *last = memory + DVI__LAST_Y;
-  if (!own->late_paths || memory[DVI__LATE] == 0) return last;
-  dvi__action_path_of_forces(own->action, memory[DVI__LAST_H], last,
-                             memory + dvi__element_forces(self), own->guess);
-  return own->guess;
-}
-
-/* Guess the continued last path, or a straight line without one. */
-static dvi_status element_guess(dvi__stepper *self, const dvi__element_place *at, double *Y)
-{
-  dvi__element *own = self->own;
-  if (at->last_h == 0) return dvi__element_straight(self, at, Y);
-  dvi__action_continue(own->action, at->h / at->last_h, dvi__element_last_path(self), Y);
-  dvi__action_begin_multipliers(own->action, Y);
-  return DVI_OK;
-}
+/* ---- solution ---- */
 
 /* Try one rung from the guess. Each rung has its own counter. */
 static dvi_status element_solve_by(dvi__stepper *self, const dvi__element_place *at, dvi__rung rung,
@@ -336,7 +317,7 @@ static dvi_status element_solve_by(dvi__stepper *self, const dvi__element_place 
   const double size = dvi__largest((size_t)self->system->n, at->q);
   const int patient = own->choice == DVI__SOLVER_FIXED_POINT || own->without_hessian != NULL;
   own->forces_of = rung == DVI__FIXED_POINT && at->last_g != NULL ? at : NULL;
-  if (own->forces_of == NULL) DVI_TRY(element_guess(self, at, Y));
+  if (own->forces_of == NULL) DVI_TRY(dvi__element_guess(self, at, Y));
   if (own->centred)
     memcpy(own->guess, Y, (size_t)dvi__action_unknowns(own->action) * sizeof(double));
   const dvi_status status = dvi__solve(own->solver, rung, size, 1, patient, Y, report);
@@ -392,15 +373,16 @@ static double *element_frozen_part(const dvi__stepper *self)
   return self->memory + dvi__element_forces(self) + dvi__action_forces_count(own->action);
 }
 
-/* Solve by the blocks, whose part is the last one of the memory. */
+/* Solve by the blocks, whose part is the last but one of the memory. */
 static dvi_status element_solve_by_blocks(dvi__stepper *self, const dvi__element_place *at,
                                           double *Y, dvi__solve_report *report)
 {
   dvi__element *own = self->own;
-  const size_t numbers = DVI__FROZEN_POINT + dvi__blocks_numbers(own->blocks);
+  const size_t behind = DVI__FROZEN_POINT + dvi__blocks_numbers(own->blocks) +
+                        (size_t)dvi__action_unknowns(own->action);
   own->by_blocks = own->in_blocks = 1;
   const dvi_status status = element_solve_simplified(
-      self, at, self->memory + self->memory_count - numbers, Y, report);
+      self, at, self->memory + self->memory_count - behind, Y, report);
   own->in_blocks = 0;
   return status;
 }
@@ -486,6 +468,7 @@ static dvi_status element_advance(dvi__stepper *self, dvi__state *state, double 
   if (state->supplied != NULL)
     dvi__add_compensated_all(1 + self->system->symmetry_count, state->supplied,
                              state->supplied_compensation, own->supply);
+  dvi__element_note_bending(self, h);
   self->memory[DVI__LAST_H] = h;
   return DVI_OK;
 }

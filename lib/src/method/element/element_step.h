@@ -55,7 +55,7 @@ dvi_status dvi__element_add_term(dvi__stepper *self, const dvi__row_term *term);
  *                      the unknowns (dvi__element_last_path)
  *
  * The forces of the last step and the frozen Jacobian of simplified Newton's method follow, then
- * its frozen blocks. */
+ * its frozen blocks, and in charts what the last path had more than its predecessor continued. */
 enum {
   DVI__LAST_H,
   DVI__NEWTON_STEPS,

@@ -1,4 +1,4 @@
-/* The inside of a step by one element, for element_step.c and element_branch.c. */
+/* The inside of a step by one element, for the files element_*.c. */
 #ifndef DVI_METHOD_ELEMENT_ELEMENT_STRUCT_H
 #define DVI_METHOD_ELEMENT_ELEMENT_STRUCT_H
 #include "step/element/decoupled.h"
@@ -95,6 +95,13 @@ const dvi__decoupled *dvi__element_frozen(const dvi__element *own);
 /* Guess Y by a straight line along the velocity at the start, which is found from that of the last
  * path. */
 dvi_status dvi__element_straight(dvi__stepper *self, const dvi__element_place *at, double *Y);
+
+/* Guess Y by the continued last path, or by a straight line without one. */
+dvi_status dvi__element_guess(dvi__stepper *self, const dvi__element_place *at, double *Y);
+
+/* Note for the next guess how the solved path of a step h, whose guess is known, bends away from
+ * the continued one. */
+void dvi__element_note_bending(dvi__stepper *self, double h);
 
 /* Find Y of the solution that continues those of shorter steps. `whole` is the failure of the
  * ladder, with the thread's sentence, or DVI_OK. */

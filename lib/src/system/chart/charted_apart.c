@@ -124,7 +124,8 @@ static dvi_status find_apart(dvi__charted *x, int c, int count, int from, int gr
                              const double *xi)
 {
   const dvi__factor_slot *slot = &x->base->slots[c];
-  double at[DVI__CHART_SIZE], y[DVI__CHART_POINT],
+  double at[DVI__CHART_SIZE],
+      y[DVI__CHART_POINT] = {0},
       *functions = x->stumpff + FUNCTIONS * ((size_t)c * DVI__GROUP + (size_t)k);
   read_local(slot, (size_t)count, (size_t)from, xi, at);
   if (slot->kind != DVI__LINE) {

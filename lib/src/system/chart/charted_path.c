@@ -57,12 +57,14 @@ static void moment_change(const dvi__charted *x, const dvi__factor_slot *slot, c
   times_W(size, W, by_rate, in_rate);
 }
 
-/* Add W N_xi and W N_xi' at point k of a group to C_qq and C_qv. */
+/* Add W N_xi and W N_xi' at point k of a group to C_qq and C_qv. The moments of masses that couple
+ * no factors are 0. */
 void dvi__charted_add_moment_changes(dvi__charted *x, int count, int first, int group, int k)
 {
-  const size_t to = (size_t)first + (size_t)k;
-  memset(x->turned_T, 0, 3 * (size_t)x->base->n * sizeof(double));
-  memset(x->turned_S, 0, 3 * (size_t)x->base->n * sizeof(double));
+  const size_t to = (size_t)first + (size_t)k, numbers = 3 * (size_t)x->base->n;
+  const int apart = x->inertia != NULL;
+  memset(x->turned_T, 0, numbers * sizeof(double));
+  if (!apart) memset(x->turned_S, 0, numbers * sizeof(double));
   for (int c = 0; c < x->base->slot_count; c++) {
     const dvi__factor_slot *slot = &x->base->slots[c];
     double y[DVI__CHART_POINT], v[DVI__CHART_POINT], a[DVI__CHART_POINT], b[DVI__CHART_POINT],
@@ -71,11 +73,15 @@ void dvi__charted_add_moment_changes(dvi__charted *x, int count, int first, int 
     dvi__charted_pair(slot, group, k, x->y, x->rate, y, v);
     dvi__charted_pair(slot, group, k, x->L_y, x->w, a, b);
     turn_rows(slot, y, x->W + 9 * c, x->turned_T + 3 * (size_t)slot->q);
-    turn_rows(slot, v, x->W + 9 * c, x->turned_S + 3 * (size_t)slot->q);
+    if (apart)
+      memset(b, 0, sizeof b);
+    else
+      turn_rows(slot, v, x->W + 9 * c, x->turned_S + 3 * (size_t)slot->q);
     moment_change(x, slot, x->W + 9 * c, a, b, in_xi, in_rate);
     dvi__charted_add_own_blocks(x, c, in_xi, in_rate, (size_t)count, to, x->C_qq, x->C_qv);
   }
   dvi__charted_add_potentials(x, group, k, x->turned_T, (size_t)count, to, x->C_qq);
+  if (apart) return;
   dvi__charted_add_mass_product(x, x->mass_in_qq, x->turned_S, x->S, (size_t)count, to, x->C_qq);
   dvi__charted_add_mass_product(x, x->mass_in_qv, x->turned_S, x->T, (size_t)count, to, x->C_qv);
 }
