@@ -18,9 +18,9 @@ void dvi__trial_in(const dvi__space *space, long double tau, double *psi, double
   long double value[DVI__TRIAL_MAX], derivative[DVI__TRIAL_MAX], at_end[DVI__TRIAL_MAX];
   dvi__space_evaluate(space, tau, value, derivative);
   round_difference(space->degree, derivative, zero, dpsi);
-  dvi__space_evaluate(space, 0, at_end, NULL);
+  if (psi != NULL) dvi__space_evaluate(space, 0, at_end, NULL);
   round_difference(space->degree, value, at_end, psi);
-  dvi__space_evaluate(space, 1, at_end, NULL);
+  if (bar != NULL) dvi__space_evaluate(space, 1, at_end, NULL);
   round_difference(space->degree, value, at_end, bar);
 }
 

@@ -141,7 +141,7 @@ static dvi_status element_create_solver(dvi__stepper *self, dvi__element *own)
       .magnitudes = dvi__action_has_terms(own->action) || self->system->damping > 0
                         ? element_magnitudes
                         : NULL};
-  if (has_fixed_point) {
+  if (dvi__action_has_offsets(own->action)) {
     equations.own_point = element_own_point;
     equations.own_residual = element_own_residual;
     (void)dvi__action_offsets(own->action, &equations.own_unknowns);
@@ -208,7 +208,7 @@ dvi_status dvi__element_create(dvi__stepper *self, const dvi__action_space *spac
   own->quadratic = dvi__element_is_quadratic(self->system);
   own->definite = dvi__element_is_definite(self->system, dvi__action_evaluator(own->action));
   self->weighs_damping = self->system->damping > 0;
-  own->late_paths = dvi__action_has_fixed_point(own->action) && !self->bound && !own->has_forces &&
+  own->late_paths = dvi__action_has_offsets(own->action) && !self->bound && !own->has_forces &&
                     !own->has_rates;
   if (self->system->place_rows > 0) DVI_TRY(dvi__action_constrain(own->action));
   if (self->system->place_rows > 0 || self->weighs_damping) return element_renew_solver(self);
@@ -459,10 +459,11 @@ static dvi_status element_certify(dvi__stepper *self, const dvi__element_place *
 {
   dvi__element *own = self->own;
   const double size = dvi__largest((size_t)self->system->n, at->q);
-  const int is_iterated = dvi__action_is_iterated(own->action);
-  const dvi_status status = dvi__certify(own->solver, size, is_iterated ? NULL : Y, report);
+  const int has_offsets = dvi__action_has_offsets(own->action) &&
+                          dvi__action_is_iterated(own->action);
+  const dvi_status status = dvi__certify(own->solver, size, has_offsets ? NULL : Y, report);
   if (status != DVI_NOT_CONVERGED) return status;
-  if (is_iterated) dvi__action_fixed_point_path(own->action, Y);
+  if (has_offsets) dvi__action_fixed_point_path(own->action, Y);
   DVI_TRY(dvi__solve(own->solver, DVI__KINSOL, size, 0, 0, Y, report));
   return element_ends(own, Y);
 }

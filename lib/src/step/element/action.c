@@ -4,6 +4,7 @@
 
 #include "step/element/action_struct.h"
 #include "step/element/fixed_point.h"
+#include "space/trial.h"
 #include "core/memory.h"
 #include "core/status.h"
 
@@ -24,13 +25,14 @@ static dvi_status action_allocate_chord(dvi__action *a, dvi_counters *counters)
 {
   const dvi_system *system = a->system;
   if (system->lagrangian == NULL || system->terms & DVI__ONE_FORM) return DVI_OK;
-  a->middle[0] = DVI_NEW(double, a->n);
-  a->middle[1] = DVI_NEW(double, a->n);
+  a->middle[0] = DVI_NEW(double, 2 * ((size_t)a->n + (size_t)a->s));
   a->middle_vv = DVI_NEW(double, dvi__pattern_entries(&system->vv));
   if (a->n <= DVI__CHORD_INVERSE) a->chord_inverse = DVI_NEW(double, (size_t)a->n *(size_t)a->n);
-  if (!a->middle[0] || !a->middle[1] || !a->middle_vv ||
-      (a->n <= DVI__CHORD_INVERSE && !a->chord_inverse))
+  if (!a->middle[0] || !a->middle_vv || (a->n <= DVI__CHORD_INVERSE && !a->chord_inverse))
     return dvi__fail(DVI_NO_MEMORY, "action: no memory for the velocity Hessian");
+  a->middle[1] = a->middle[0] + a->n;
+  a->middle_basis = a->middle[1] + a->n;
+  dvi__trial_in(&a->trial, 0.5L, a->middle_basis, NULL, a->middle_basis + a->s);
   return dvi__linear_create(&system->vv, DVI__LINEAR_AUTO, counters, &a->chord);
 }
 
@@ -113,7 +115,6 @@ void dvi__action_destroy(dvi__action **action)
                            a->chord_inverse,
                            a->moved,
                            a->middle[0],
-                           a->middle[1],
                            a->fixed_point.matrix,
                            a->fixed_point.node,
                            a->fixed_point.slant,

@@ -72,7 +72,8 @@ struct dvi__action {
   /* Chord. */
   double scaled_h;       /* h of the last row scales */
   double *middle_vv;     /* L_vv at one point (general Lagrangians) */
-  double *middle[2];     /* q, v at that point */
+  double *middle[2];     /* q, v at that point, and the array below, in one block */
+  double *middle_basis;  /* [2 s] psi and psi' there */
   dvi__linear *chord;    /* factors middle_vv */
   double *chord_inverse; /* [n*n] by columns, NULL if n is too large for it to pay */
   /* Jacobian. NULL until prepared. */

@@ -284,6 +284,11 @@ dvi_status dvi__action_iterate(dvi__action *a, double *change, double *largest)
   return DVI_OK;
 }
 
+int dvi__action_has_offsets(const dvi__action *a)
+{
+  return a->system->mass_diagonal != NULL && a->Z != NULL;
+}
+
 const double *dvi__action_offsets(const dvi__action *a, int *count)
 {
   *count = a->n * a->fixed_point.lanes;

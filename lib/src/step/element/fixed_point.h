@@ -56,6 +56,9 @@ void dvi__action_fixed_point_continue(dvi__action *action, double ratio, const d
  * offset. */
 dvi_status dvi__action_iterate(dvi__action *action, double *change, double *largest);
 
+/* Tell whether the iteration is on the nodes' offsets, as above. Its forces then give the path. */
+int dvi__action_has_offsets(const dvi__action *action);
+
 /* Give the offsets after the last iteration, and their number. A row for each coordinate is padded
  * with zeros. */
 const double *dvi__action_offsets(const dvi__action *action, int *count);

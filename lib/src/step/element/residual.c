@@ -29,6 +29,16 @@ static double rows_dot(int count, const double *x, const double *y)
   return sum;
 }
 
+/* Evaluate the path where psi and psi' are these numbers [2 s]. */
+static void path_by(const dvi__action *a, const double *basis, const double *Y, double h,
+                    double *offset, double *v)
+{
+  for (size_t i = 0, s = (size_t)a->s; i < (size_t)a->n; i++) {
+    if (offset != NULL) offset[i] = rows_dot(a->s, basis, Y + i * s);
+    if (v != NULL) v[i] = rows_dot(a->s, basis + s, Y + i * s) / h;
+  }
+}
+
 dvi_status dvi__action_residual(dvi__action *a, const double *Y, double *R)
 {
   a->iterated = 0;
@@ -116,7 +126,7 @@ dvi_status dvi__action_prepare_chord(dvi__action *a, const double *Y)
 {
   if (a->system->lagrangian == NULL) return DVI_OK;
   const double middle = a->t0 + 0.5 * a->h, *L_vv;
-  dvi__action_path(a, Y, a->h, 0.5, a->middle[0], a->middle[1]);
+  path_by(a, a->middle_basis, Y, a->h, a->middle[0], a->middle[1]);
   for (int i = 0; i < a->n; i++) a->middle[0][i] += a->q0[i];
   DVI_TRY(dvi__velocity_hessian(a->evaluator, middle, a->middle[0], a->middle[1], &L_vv));
   memcpy(a->middle_vv, L_vv, (size_t)dvi__pattern_entries(&a->system->vv) * sizeof(double));
@@ -198,12 +208,8 @@ dvi_status dvi__action_scale(dvi__action *a, double *scale)
 void dvi__action_path(const dvi__action *a, const double *Y, double h, double tau, double *offset,
                       double *v)
 {
-  double *psi = a->line, *dpsi = a->line + a->s;
-  dvi__trial_in(&a->trial, tau, psi, NULL, dpsi);
-  for (size_t i = 0, s = (size_t)a->s; i < (size_t)a->n; i++) {
-    if (offset != NULL) offset[i] = rows_dot(a->s, psi, Y + i * s);
-    if (v != NULL) v[i] = rows_dot(a->s, dpsi, Y + i * s) / h;
-  }
+  dvi__trial_in(&a->trial, tau, a->line, NULL, a->line + a->s);
+  path_by(a, a->line, Y, h, offset, v);
 }
 
 void dvi__action_straight(const dvi__action *a, const double *v, double *Y)
