@@ -32,8 +32,7 @@ enum { FEW_NODES = 4, POINTS_IN_CACHE = 160 };
 static int lanes_pay(const dvi__action *action, int n)
 {
   const int nodes = dvi__action_nodes(action);
-  return (nodes <= FEW_NODES && dvi__action_has_fixed_point(action)) ||
-         n <= POINTS_IN_CACHE / nodes;
+  return (nodes <= FEW_NODES && dvi__action_has_offsets(action)) || n <= POINTS_IN_CACHE / nodes;
 }
 
 /* Tell whether the ladder begins with fixed point iteration by members' functions. */
@@ -52,8 +51,7 @@ dvi_status dvi__element_prepare_lanes(dvi__stepper *self, int capacity)
   lanes *own = self->lanes = DVI_NEW(lanes, 1);
   if (own == NULL) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
   own->patient = element->choice == DVI__SOLVER_FIXED_POINT || element->without_hessian != NULL;
-  own->criteria = dvi__fixed_point_criteria(own->patient,
-                                            dvi__action_has_fixed_point(element->action));
+  own->criteria = dvi__fixed_point_criteria(own->patient, dvi__action_has_offsets(element->action));
   own->histories.last = DVI_NEW(double, capacity);
   own->histories.ratio = DVI_NEW(double, capacity);
   own->histories.contraction = DVI_NEW(double, capacity);

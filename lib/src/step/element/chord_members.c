@@ -9,17 +9,15 @@
 #include "core/status.h"
 #include "num/simd/members.h"
 #include "num/simd/members_chord.h"
-#include "space/trial.h"
 #include "system/evaluate/velocity_hessians.h"
 #include "system/rescale/transformed.h"
 
 /* The mass of a general Lagrangian. */
 typedef struct middle_mass {
-  double psi[DVI_DEGREE_MAX], dpsi[DVI_DEGREE_MAX]; /* functions in the middle of the path */
-  double *t, *q, *v;                                /* [n*capacity] points */
-  double *L_qq, *L_qv, *L_vv;                       /* [entries*capacity] */
-  double *inverse;                                  /* [n*n*capacity] */
-  char *sound;                                      /* [capacity] the inverse is one */
+  double *t, *q, *v;          /* [n*capacity] points */
+  double *L_qq, *L_qv, *L_vv; /* [entries*capacity] */
+  double *inverse;            /* [n*n*capacity] */
+  char *sound;                /* [capacity] the inverse is one */
 } middle_mass;
 
 struct dvi__chord_members {
@@ -50,7 +48,6 @@ static dvi_status mass_create(const dvi__action *a, size_t capacity, middle_mass
   const size_t n = (size_t)a->n, qq = (size_t)dvi__pattern_entries(&system->lagrangian->qq),
                qv = (size_t)dvi__pattern_entries(&system->lagrangian->qv),
                vv = (size_t)dvi__pattern_entries(&system->lagrangian->vv);
-  dvi__trial_in(&a->trial, 0.5, mass->psi, NULL, mass->dpsi);
   mass->t = DVI_NEW(double, capacity);
   mass->q = DVI_NEW(double, n *capacity);
   mass->v = DVI_NEW(double, n *capacity);
@@ -142,8 +139,8 @@ static void find_middles(const dvi__action_members *m)
   for (size_t i = 0; i < (size_t)m->action->n; i++) {
     double *q = mass->q + i * width, *v = mass->v + i * width;
     const double *q0 = m->origin + i * width;
-    add_functions(m, i, mass->psi, q);
-    add_functions(m, i, mass->dpsi, v);
+    add_functions(m, i, m->action->middle_basis, q);
+    add_functions(m, i, m->action->middle_basis + m->action->s, v);
     for (size_t lane = 0; lane < width; lane++) q[lane] += q0[lane];
     for (size_t lane = 0; lane < width; lane++) v[lane] /= h;
   }

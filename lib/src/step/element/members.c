@@ -11,7 +11,8 @@
 
 int dvi__action_has_members(const dvi__action *a)
 {
-  return dvi__action_has_fixed_point(a) || dvi__action_has_chord_members(a);
+  return (dvi__action_has_fixed_point(a) && dvi__action_has_offsets(a)) ||
+         dvi__action_has_chord_members(a);
 }
 
 /* Allocate the numbers of fixed_point.h. */
@@ -71,8 +72,7 @@ dvi_status dvi__action_members_create(dvi__action *action, int capacity,
                                 &members->evaluator));
   if (!members_allocate(members, (size_t)capacity))
     return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d members", capacity);
-  if (!dvi__action_has_fixed_point(action))
-    return dvi__chord_members_create(members, (size_t)capacity);
+  if (!dvi__action_has_offsets(action)) return dvi__chord_members_create(members, (size_t)capacity);
   if (members_allocate_stages(members, (size_t)capacity)) return DVI_OK;
   return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d members", capacity);
 }
