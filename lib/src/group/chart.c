@@ -272,18 +272,21 @@ static void rotation_inverse(const double *R0, const double *R, double *xi)
   (void)dvi_so3_log(E, xi);
 }
 
-void dvi__chart_inverse(const dvi__chart *chart, const double *y, double *xi)
+static void sphere_inverse(const dvi__chart *chart, const double *y, double *xi)
 {
   double tangent[3];
+  dvi_s2_log(chart->y0, y, tangent);
+  for (int j = 0; j < 2; j++) xi[j] = dvi__dot(chart->basis[j], tangent);
+}
+
+void dvi__chart_inverse(const dvi__chart *chart, const double *y, double *xi)
+{
   switch (chart->kind) {
   case DVI__LINE: *xi = *y - *chart->y0; return;
   case DVI__CIRCLE:
     *xi = atan2(dvi__inner(2, chart->basis[0], y), dvi__inner(2, chart->y0, y));
     return;
-  case DVI__SPHERE:
-    dvi_s2_log(chart->y0, y, tangent);
-    for (int j = 0; j < 2; j++) xi[j] = dvi__dot(chart->basis[j], tangent);
-    return;
+  case DVI__SPHERE: sphere_inverse(chart, y, xi); return;
   case DVI__ROTATION: rotation_inverse(chart->y0, y, xi); return;
   }
 }
@@ -312,7 +315,7 @@ void dvi__chart_follow(const dvi__chart *chart, const dvi__chart *next, const do
     rotation_between(end, xi, eta);
   } else if (chart->kind == DVI__SPHERE) {
     dvi__chart_place(chart, xi, y);
-    dvi__chart_inverse(next, y, eta);
+    sphere_inverse(next, y, eta);
   } else {
     *eta = *xi - *end;
   }

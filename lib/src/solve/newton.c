@@ -94,7 +94,7 @@ static void look_ahead(const dvi__solver *s, const dvi__history *history, double
                        double whole, int kept, const double *x, outlook *now)
 {
   const double part = s->equations.ahead ? dvi__solver_worst_ratio(s, 0, s->residual, x) : HUGE_VAL;
-  if (!kept) now->reach = part;
+  if (!kept && !s->equations.approximate) now->reach = part;
   now->next = fmin(expected_part(history, correction, kept), sqrt(now->reach));
   now->unseen = s->equations.group > 1
                     ? dvi__unseen_part(part)
@@ -107,7 +107,8 @@ static int keeps_factor(const dvi__solver *s, const dvi__history *history, const
   double part = now->next;
   if (s->equations.renewed) return part * part <= now->unseen;
   if (!s->equations.ahead || s->equations.dear || history->before == 0)
-    return history->before == 0 || history->last < keep_below * history->before;
+    return part * part <= now->unseen || history->before == 0 ||
+           history->last < keep_below * history->before;
   for (int i = 1; i < MOST_KEPT && part > now->unseen; i++) part *= now->next;
   return part <= now->unseen;
 }

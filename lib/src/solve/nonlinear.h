@@ -54,9 +54,10 @@ struct dvi__equations {
   /* Newton's method factors the Jacobian at each of its points, because the equations are nearly
    * singular and an old factor leads astray */
   int renewed;
-  /* all results are those of the solution, or are corrected to it to first order, and the Jacobian
-   * is exact, so that the next correction need not be seen to be small */
+  /* all results are those of the solution, or are corrected to it to first order, so that the next
+   * correction need not be seen to be small */
   int ahead;
+  int approximate; /* the Jacobian is exact for short steps alone */
   int dear; /* a Jacobian costs as much as many residuals */
   /* The same fixed point iteration in variables of the equations' own, where that is cheaper. NULL
    * if residual and chord serve. */
