@@ -49,6 +49,34 @@ START_TEST(all_stages_at_once_give_the_same_steps)
 }
 END_TEST
 
+/* The Jacobians of both are exact for short steps alone. Here they contract by a constant factor up
+ * to 0.9, so that no end may be foreseen from the size of the first correction. */
+static const struct {
+  const char *problem, *onestep;
+  double h;
+} slow[] = {{"oscillator", "butcher6", 3},
+            {"oscillator", "butcher6", 3.1786},
+            {"double-pendulum", "euler", 0.48029972879807525}};
+
+START_TEST(long_steps_are_solved_to_the_end)
+{
+  problem *model = create_problem(slow[_i].problem, NULL);
+  dvi_integrator *shot = start_integrator(
+                     model, method_spec("shooting:onestep=%s,solve=shot", slow[_i].onestep)),
+                 *stages = start_integrator(
+                     model, method_spec("shooting:onestep=%s,solve=stages", slow[_i].onestep));
+  advance(shot, slow[_i].h, 1);
+  advance(stages, slow[_i].h, 1);
+  const double difference = relative_distance(model->nq, dvi_integrator_q(shot),
+                                              dvi_integrator_q(stages), model->q);
+  ck_assert_msg(difference <= 1e-14, "%s %s: apart by %g", model->name, slow[_i].onestep,
+                difference);
+  dvi_integrator_destroy(&shot);
+  dvi_integrator_destroy(&stages);
+  problem_destroy(&model);
+}
+END_TEST
+
 /* Only neighbours of a chain couple. The factors stay sparse, where those of the shot would take
  * 2000 x 2000 numbers. */
 START_TEST(long_chains_are_solved_by_all_stages_at_once)
@@ -114,6 +142,7 @@ SUITE(shooting_solve)
 {
   tcase_set_timeout(tests, 60);
   tcase_add_loop_test(tests, all_stages_at_once_give_the_same_steps, 0, SOLVED);
+  tcase_add_loop_test(tests, long_steps_are_solved_to_the_end, 0, sizeof slow / sizeof *slow);
   tcase_add_test(tests, long_chains_are_solved_by_all_stages_at_once);
   tcase_add_loop_test(tests, left_out_the_cheaper_one_is_taken, 0, TAKEN);
   tcase_add_loop_test(tests, what_is_too_large_or_has_no_such_way_is_refused, 0, REFUSED);
