@@ -344,8 +344,8 @@ const double *dvi__action_offsets(const dvi__action *a, int *count)
   return a->Z;
 }
 
-WIDE static void subtract(size_t count, const double *restrict x, const double *restrict y,
-                          double *restrict difference)
+WIDE static void subtract_offsets(size_t count, const double *restrict x, const double *restrict y,
+                                  double *restrict difference)
 {
   for (size_t k = 0; k < count; k++) difference[k] = x[k] - y[k];
 }
@@ -354,7 +354,7 @@ dvi_status dvi__action_iteration_residual(dvi__action *a, const double *Z, doubl
 {
   double change, largest;
   DVI_TRY(dvi__action_iterate(a, &change, &largest));
-  subtract((size_t)a->n * (size_t)a->fixed_point.lanes, Z, a->Z, residual);
+  subtract_offsets((size_t)a->n * (size_t)a->fixed_point.lanes, Z, a->Z, residual);
   return DVI_OK;
 }
 
