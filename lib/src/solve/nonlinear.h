@@ -58,7 +58,7 @@ struct dvi__equations {
    * correction need not be seen to be small */
   int ahead;
   int approximate; /* the Jacobian is exact for short steps alone */
-  int dear; /* a Jacobian costs as much as many residuals */
+  int dear;        /* a Jacobian costs as much as many residuals */
   /* The same fixed point iteration in variables of the equations' own, where that is cheaper. NULL
    * if residual and chord serve. */
   void (*fixed_point_begin)(void *of, const double *x);
