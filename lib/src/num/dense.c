@@ -50,13 +50,14 @@ static int dense_allocate_small(dense *d, int n)
 {
   const int stride = dvi__small_lu_stride(n);
   double *at = DVI_NEW(double, 2 * stride * stride + stride);
+  if (at == NULL) return 0;
   d->small = (dvi__small_lu){.n = n,
                              .stride = stride,
                              .upper = at,
-                             .lower = at + (at != NULL ? stride * stride : 0),
-                             .diagonal = at + (at != NULL ? 2 * stride * stride : 0),
+                             .lower = at + stride * stride,
+                             .diagonal = at + 2 * stride * stride,
                              .pivot = d->pivot};
-  return at != NULL;
+  return 1;
 }
 
 static dvi_status dense_create(const dvi__factor_form *form, void **factor)

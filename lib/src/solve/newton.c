@@ -119,10 +119,10 @@ dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__so
   dvi__history history = {0};
   outlook now = {.reach = HUGE_VAL};
   double whole, last_relative = HUGE_VAL;
-  int fresh = 0, growing = 0, converged = 0;
+  int kept = 0, growing = 0, converged = 0;
   report->idle = 0;
   for (report->iterations = 1; report->iterations <= MOST_ITERATIONS; report->iterations++) {
-    if (!fresh) DVI_TRY(dvi__solver_factor(s, x));
+    if (!kept) DVI_TRY(dvi__solver_factor(s, x));
     DVI_TRY(dvi__solver_residual(s, x, s->residual));
     report->row = dvi__largest((size_t)s->equations.unknowns, s->residual);
     const dvi_status solved = dvi__solver_correction(s, s->residual);
@@ -132,10 +132,10 @@ dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__so
     dvi__solver_note(s, x, report);
     const dvi__progress progress = dvi__test_correction(report->correction, &history, &criteria,
                                                         whole, size);
-    look_ahead(s, &history, report->correction, whole, fresh, x, &now);
+    look_ahead(s, &history, report->correction, whole, kept, x, &now);
     if (progress != DVI__STALLED && !converged && now.next <= now.unseen) return DVI_OK;
     const int no_better = report->correction >= criteria.stagnant * history.before,
-              is_idle = no_better && history.before > 0 &&
+              is_idle = no_better && !kept && history.before > 0 &&
                         report->correction <= small_correction * whole;
     int at_floor = 0;
     report->idle = is_idle ? report->idle + 1 : 0;
@@ -149,7 +149,7 @@ dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__so
     if (wary && report->iterations == 2 && !converged &&
         report->correction > criteria.noise * (whole + size) && dvi__misleading(&history, whole))
       break;
-    fresh = converged || keeps_factor(s, &history, &now);
+    kept = converged || keeps_factor(s, &history, &now);
   }
   if (converged) return DVI_OK;
   return dvi__fail(DVI_NOT_CONVERGED, "Newton's method does not settle (change %.1e after %.1e)",
