@@ -98,7 +98,7 @@ static double difference_by(double mu, const place *from, double tau, const doub
   double sum = 0;
   for (int k = 0; k < 4; k++) {
     place near = *from;
-    *(j < D ? near.q + j : near.v + j - D) += shift[k] * step;
+    *(j < D ? near.q + j : near.v + (j - D)) += shift[k] * step;
     const place to = moved(mu, &near, tau);
     for (int i = 0; i < D; i++) sum += weight[k] * lambda[i] * to.q[i];
   }

@@ -95,7 +95,7 @@ static void look_ahead(const dvi__solver *s, const dvi__history *history, double
 {
   const double part = s->equations.ahead ? dvi__solver_worst_ratio(s, 0, s->residual, x) : HUGE_VAL;
   if (!kept && !s->equations.approximate) now->reach = part;
-  now->next = expected_part(history, correction, kept);
+  now->next = expected_part(history, correction, kept || s->equations.approximate);
   if (history->contraction == 0) now->next = fmin(now->next, sqrt(now->reach));
   now->unseen = s->equations.group > 1
                     ? dvi__unseen_part(part)
