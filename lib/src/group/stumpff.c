@@ -104,12 +104,12 @@ void dvi__stumpff_four(double s, double c[4])
 
 void dvi__stumpff_six(double s, double c[6])
 {
-  double all[9];
   if (s <= NEAR) {
     c[5] = sum_stumpff_series(5, 5, s); /* the first term left out is below 1e-17 of the sum */
     c[4] = sum_stumpff_series(4, 5, s);
     recur_down(s, 3, 0, c);
   } else {
+    double all[9];
     dvi__stumpff(s, all);
     memcpy(c, all, 6 * sizeof *c);
   }

@@ -19,10 +19,11 @@ enum { MOST_KEPT = 5 };
  * Jacobian, dominates. One correction that doubles is a bad sign, and two end the iteration. */
 static const dvi__criteria roundoff = {.stagnant = 0.5, .noise = 1e4 * DBL_EPSILON, .slowest = 2.0};
 
-/* Small corrections that do not shrink answer the roundings of some rows. One alone may be that of
- * unknowns without effect, as multipliers of dependent rows, while the error of the others is still
- * the square of their correction. With a second one it is a square again. */
-static const double small_correction = 1e-4;
+/* Small corrections that do not shrink are idle. They answer the roundings of some rows. One alone
+ * may be that of unknowns without effect, as multipliers of dependent rows, while the error of the
+ * others is still the square of their correction. With a second one it is a square again. Kept
+ * Jacobians give no squares, and settle nothing. */
+static const double small_correction = 1e-4, idle_ratio = 0.25;
 
 /* Corrections of noisy residuals may be noise from larger ones on. */
 static dvi__criteria newton_criteria(const dvi__solver *s)
@@ -120,7 +121,7 @@ dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__so
   dvi__history history = {0};
   outlook now = {.reach = HUGE_VAL};
   double whole, last_relative = HUGE_VAL;
-  int kept = 0, growing = 0, converged = 0;
+  int kept = 0, growing = 0, settled = 0, converged = 0;
   report->idle = 0;
   for (report->iterations = 1; report->iterations <= MOST_ITERATIONS; report->iterations++) {
     if (!kept) DVI_TRY(dvi__solver_factor(s, x));
@@ -135,13 +136,15 @@ dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__so
                                                         whole, size);
     look_ahead(s, &history, report->correction, whole, kept, x, &now);
     if (progress != DVI__STALLED && !converged && now.next <= now.unseen) return DVI_OK;
-    const int no_better = report->correction >= criteria.stagnant * history.before,
-              is_idle = no_better && !kept && history.before > 0 &&
-                        report->correction <= small_correction * whole;
+    const int is_small = report->correction <= small_correction * whole,
+              is_idle = is_small && history.before > 0 &&
+                        report->correction >= idle_ratio * history.before;
     int at_floor = 0;
-    report->idle = is_idle ? report->idle + 1 : 0;
-    if (progress != DVI__CONVERGED && no_better)
-      DVI_TRY(dvi__solver_at_floor(s, x, report->idle > 1, &at_floor));
+    report->idle = is_small ? report->idle + is_idle : 0;
+    settled = is_small ? settled + (is_idle && !kept) : 0;
+    if (progress != DVI__CONVERGED &&
+        (settled > 1 || report->correction >= criteria.stagnant * history.before))
+      DVI_TRY(dvi__solver_at_floor(s, x, settled > 1, &at_floor));
     if (at_floor) return DVI_OK;
     converged |= progress == DVI__CONVERGED;
     if (converged && small_ones_settled(s, x, &last_relative)) return DVI_OK;
