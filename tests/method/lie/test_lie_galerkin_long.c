@@ -11,13 +11,16 @@
 
 enum { SAMPLING = 10 };
 
+/* The fit takes samples for independent. The last motion is chaotic, and its energy wanders over
+ * many samples, so that the significance of no drift is 0.8 to 6, by roundings alone. That of a
+ * drift as large as the energy's error is about 100. */
 static const struct {
   body_kind kind;
   const char *method;
-  double h;
-} runs[] = {{PENDULUM_3D, "lie-galerkin:degree=2", 0.05},
-            {FREE_BODY, "euler-poincare:degree=2", 0.2},
-            {DIRECTIONS, "sphere-galerkin:degree=2", 0.005}};
+  double h, significance;
+} runs[] = {{PENDULUM_3D, "lie-galerkin:degree=2", 0.05, 3},
+            {FREE_BODY, "euler-poincare:degree=2", 0.2, 3},
+            {DIRECTIONS, "sphere-galerkin:degree=2", 0.005, 10}};
 
 /* Over 1e6 steps the roundings of the impulses leave 1e3 ulp in the momentum, and no trend. The
  * distance is that of the last rounding. */
@@ -39,8 +42,9 @@ START_TEST(a_million_steps_keep_what_they_should)
     far = fmax(far, dvi_system_distance(model.system, dvi_integrator_q(made)));
   }
   dvi_drift_result(&drift, &energy);
-  ck_assert_msg(energy.significance < 3, "%s: energy %.1e, drift %.1e, significance %.1f",
-                model.name, energy.largest, energy.change, energy.significance);
+  ck_assert_msg(energy.significance < runs[_i].significance,
+                "%s: energy %.1e, drift %.1e, significance %.1f", model.name, energy.largest,
+                energy.change, energy.significance);
   ck_assert_msg(momentum < 1e-12 * fmax(1, fabs(first[1])), "%s: momentum %.1e", model.name,
                 momentum);
   ck_assert_msg(far < 1e-15, "%s: distance %.1e", model.name, far);
