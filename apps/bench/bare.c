@@ -14,8 +14,10 @@
 
 #define INLINE static inline __attribute__((always_inline))
 
-/* the processor's best instructions, as in the library */
-#if defined(__x86_64__) && defined(__gnu_linux__) && (!defined(__clang__) || __clang_major__ >= 14)
+/* The processor's best instructions, as in the library. The choice is made before gcc's thread
+ * sanitizer can watch it. */
+#if defined(__x86_64__) && defined(__gnu_linux__) && \
+    (!defined(__clang__) || __clang_major__ >= 14) && !defined(__SANITIZE_THREAD__)
 #define CLONES __attribute__((target_clones("arch=x86-64-v4", "avx2", "default")))
 #else
 #define CLONES
@@ -52,26 +54,8 @@ static void legendre(int count, long double x, long double *P)
   for (int k = 1; k + 1 < count; k++) P[k + 1] = ((2 * k + 1) * x * P[k] - k * P[k - 1]) / (k + 1);
 }
 
-/* Find the zeros x of P_s, and the weights on [0,1], by Newton's method. */
-static void gauss(int s, long double *x, long double *weight)
-{
-  static const long double pi = 3.14159265358979323846L;
-  long double P[DEGREE_MAX + 2];
-  for (int j = 0; j < s; j++) {
-    long double slope = 1;
-    x[j] = -cosl(pi * (j + 0.75L) / (s + 0.5L));
-    for (int i = 0; i < 9; i++) {
-      legendre(s + 2, x[j], P);
-      slope = s * (P[s - 1] - x[j] * P[s]) / (1 - x[j] * x[j]);
-      x[j] -= P[s] / slope;
-    }
-    weight[j] = 1 / ((1 - x[j] * x[j]) * slope * slope);
-  }
-}
-
 /* Make A, and the matrix E that continues polynomials of few terms by a step. */
-static void fill_matrices(int s, const long double *x, const long double *weight, square A,
-                          square E)
+static void fill_matrices(int s, const long double *x, const double *weight, square A, square E)
 {
   long double P[DEGREE_MAX + 2], here[DEGREE_MAX + 2], beyond[DEGREE_MAX + 2];
   const int terms = s < CONTINUED_DEGREE ? s : CONTINUED_DEGREE;
@@ -98,15 +82,15 @@ static void multiply(int s, square left, square right, square product)
 
 static void fill(bare *b, square *room)
 {
-  long double x[DEGREE_MAX], weight[DEGREE_MAX];
-  gauss(b->s, x, weight);
-  fill_matrices(b->s, x, weight, room[0], room[1]);
+  long double x[DEGREE_MAX];
+  (void)dvi_quadrature(DVI_GAUSS, b->s, b->node, b->weight); /* the degree is in its range */
+  for (int j = 0; j < b->s; j++) x[j] = 2 * (long double)b->node[j] - 1;
+  fill_matrices(b->s, x, b->weight, room[0], room[1]);
   multiply(b->s, room[0], room[0], room[2]);
   multiply(b->s, room[2], room[1], room[0]);
   for (int j = 0; j < b->s; j++) {
-    b->node[j] = b->padded[j] = (double)((1 + x[j]) / 2);
-    b->weight[j] = (double)weight[j];
-    b->end[j] = (double)(weight[j] * (1 - x[j]) / 2);
+    b->padded[j] = b->node[j];
+    b->end[j] = b->weight[j] * (1 - b->node[j]);
     for (int i = 0; i < b->s; i++) {
       b->stages[j * b->lanes + i] = (double)room[2][i][j];
       b->guess[j * b->lanes + i] = (double)room[0][i][j];

@@ -3,7 +3,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "bench/bare.h"
 #include "bench/machine.h"
 #include "bench/sundials_build.h"
 #include "cli/command.h"
@@ -14,7 +13,7 @@ static bool has_sundials(const work *w)
 {
   for (int i = 0; i < w->jobs; i++) {
     const whole_job *job = w->job[i].subject->user;
-    if (job->peer >= 0 && dvi_reference_name((dvi_reference_code)job->peer) != NULL) return true;
+    if (job->peer >= 0) return true;
   }
   return false;
 }
@@ -34,23 +33,19 @@ static void print_bare(FILE *stream, const work *w)
     const whole_job *loop = w->job[first].subject->user;
     double ratio[WORK_LONGER_MAX + WORK_LEVELS_MAX];
     int count = 0;
-    const char *name = NULL;
-    for (int i = first; i < work_group_end(w, first) && loop->degree > 0; i++)
-      for (int k = 0; k < first; k++) {
-        const whole_job *job = w->job[k].subject->user;
-        if (job->method == NULL || bare_degree(job->method) != loop->degree ||
-            w->job[k].level.refinement != w->job[i].level.refinement)
-          continue;
-        name = w->job[k].subject->name;
-        ratio[count++] = (w->job[k].seconds.median - w->job[k].preparation_seconds) /
-                         (w->job[i].seconds.median - w->job[i].preparation_seconds);
-      }
+    for (int i = first; i < work_group_end(w, first) && loop->beside != NULL; i++)
+      for (int k = 0; k < first; k++)
+        if (w->job[k].subject == &loop->beside->subject &&
+            w->job[k].level.refinement == w->job[i].level.refinement)
+          ratio[count++] = (w->job[k].seconds.median - w->job[k].preparation_seconds) /
+                           (w->job[i].seconds.median - w->job[i].preparation_seconds);
     if (count == 0) continue;
     const spread of = samples_spread(count, ratio);
     (void)fprintf(stream,
                   "%s over %s at equal steps, without creation: %.2f (least %.2f, quartiles %.2f, "
                   "%.2f)\n",
-                  name, w->job[first].subject->name, of.median, of.least, of.lower, of.upper);
+                  loop->beside->subject.name, w->job[first].subject->name, of.median, of.least,
+                  of.lower, of.upper);
   }
 }
 

@@ -261,7 +261,8 @@ static const option command_options[] = {
 
 static const command_line command = {
     .name = "bench",
-    .synopsis = "PROBLEM|SCENE.yaml [--method SPEC ...] [--against cvode,arkode,ida] [OPTIONS]",
+    .synopsis =
+        "PROBLEM|SCENE.yaml [--method SPEC ...] [--against cvode,arkode,ida,bare] [OPTIONS]",
     .operand = "PROBLEM",
     .summary = "Measure speed against error, of methods and of other codes, all in one run; or "
                "the cost of a step against size.\n",

@@ -1,11 +1,8 @@
 #include "bench/peer.h"
 
-#include <stdio.h>
 #include <string.h>
 
 #include "cli/command.h"
-
-static char reason[512];
 
 const char *peer_name(int peer)
 {
@@ -63,12 +60,5 @@ dvi_status peer_solve(int peer, const problem *scene, double t_end, double toler
   memcpy(q, scene->q, (size_t)scene->nq * sizeof *q);
   memcpy(p, scene->p, (size_t)scene->nv * sizeof *p);
   if (report == NULL) report = &unread;
-  const dvi_status status = dvi_reference_solve(scene->system, 0.0, t_end, q, p, &options, report);
-  if (status != DVI_OK) (void)snprintf(reason, sizeof reason, "%s", dvi_last_error());
-  return status;
-}
-
-const char *peer_error(void)
-{
-  return reason;
+  return dvi_reference_solve(scene->system, 0.0, t_end, q, p, &options, report);
 }

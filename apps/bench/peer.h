@@ -26,10 +26,7 @@ int peers_read(const words *against, peer_list *list);
  * end. After a failure they hold the start.
  *
  *  @param[out] report  steps and evaluations, may be NULL
- *  @return the status as of dvi_reference_solve. peer_error() has the reason */
+ *  @return the status and sentence of dvi_reference_solve */
 dvi_status peer_solve(int peer, const problem *scene, double t_end, double tolerance, double *q,
                       double *p, dvi_reference_report *report);
-
-/** Return the reason why the last peer_solve failed. */
-const char *peer_error(void);
 #endif

@@ -71,7 +71,10 @@ static double compare(N_Vector x, N_Vector y, N_Vector z)
   return theirs / own;
 }
 
-double sundials_sum_ratio(void)
+/* Measure how many times as long a sum of vectors of SUNDIALS takes as the same loop compiled with
+ * this program. NaN without memory, or if this program was compiled without optimisation or with a
+ * sanitizer. */
+static double sum_ratio(void)
 {
   SUNContext context = NULL;
   double ratio = (double)NAN;
@@ -88,7 +91,7 @@ double sundials_sum_ratio(void)
 
 void sundials_build_print(FILE *stream)
 {
-  const double ratio = sundials_sum_ratio();
+  const double ratio = sum_ratio();
   (void)fprintf(stream, "SUNDIALS %s from %s: ", dvi_reference_version(), DVI_BUILD_SUNDIALS);
   if (isnan(ratio)) {
     (void)fprintf(stream, "not known whether it was compiled with optimisation\n");

@@ -96,7 +96,7 @@ static dvi_status method_repeat(void *user, double steps, double *preparation)
   return job_of(user, steps, preparation, NULL);
 }
 
-static const char *method_reason(void *user)
+static const char *last_reason(void *user)
 {
   (void)user;
   return dvi_last_error();
@@ -116,7 +116,7 @@ void whole_job_of_method(whole_job *job, motion_study *study, const char *method
   job->subject.watch = method_watch;
   job->subject.repeat = method_repeat;
   job->subject.roundoff = NULL;
-  job->subject.reason = method_reason;
+  job->subject.reason = last_reason;
   job->subject.user = job;
 }
 
@@ -222,42 +222,43 @@ static void peer_setting(void *user, double tolerance, char *text, size_t size)
   (void)snprintf(text, size, "tol=%.0e", tolerance);
 }
 
-static const char *peer_reason(void *user)
-{
-  (void)user;
-  return peer_error();
-}
-
-dvi_status whole_job_of_peer(whole_job *job, int peer, const judged_motion *motion)
+/* Make a job that is no method's. Its name, run and repeat are left out. DVI_NO_MEMORY. */
+static dvi_status job_with_room(whole_job *job, const judged_motion *motion)
 {
   const size_t n = (size_t)motion->scene->nq;
-  *job = (whole_job){.motion = *motion, .peer = peer, .room = calloc(2 * n, sizeof *job->room)};
-  job->subject = (study_subject){.name = peer_name(peer),
-                                 .problem = motion->scene->name,
+  *job = (whole_job){.motion = *motion, .peer = -1, .room = calloc(2 * n, sizeof *job->room)};
+  job->subject = (study_subject){.problem = motion->scene->name,
                                  .words = &whole_job_words,
                                  .extent = motion->t_end,
                                  .judge = motion->judge->words,
                                  .judge_error = motion->judge->error,
-                                 .run = peer_run,
-                                 .repeat = peer_repeat,
-                                 .setting = peer_setting,
-                                 .reason = peer_reason,
                                  .user = job};
   return job->room != NULL ? DVI_OK : DVI_NO_MEMORY;
 }
 
-dvi_status whole_job_of_bare(whole_job *job, int degree, const judged_motion *motion)
+dvi_status whole_job_of_peer(whole_job *job, int peer, const judged_motion *motion)
 {
-  const dvi_status status = whole_job_of_peer(job, -1, motion);
+  const dvi_status status = job_with_room(job, motion);
+  job->peer = peer;
+  job->subject.name = peer_name(peer);
+  job->subject.run = peer_run;
+  job->subject.repeat = peer_repeat;
+  job->subject.setting = peer_setting;
+  job->subject.reason = last_reason;
+  return status;
+}
+
+dvi_status whole_job_of_bare(whole_job *job, int degree, const whole_job *beside,
+                             const judged_motion *motion)
+{
+  const dvi_status status = job_with_room(job, motion);
   (void)snprintf(job->name, sizeof job->name, "bare:degree=%d", degree);
   job->degree = degree;
-  job->span = motion->t_end;
+  job->beside = beside;
+  job->span = job->subject.span = motion->t_end;
   job->subject.name = job->name;
-  job->subject.span = motion->t_end;
   job->subject.run = bare_level;
   job->subject.repeat = bare_repeat;
-  job->subject.setting = NULL;
-  job->subject.reason = NULL;
   return status;
 }
 

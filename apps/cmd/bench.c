@@ -90,6 +90,16 @@ static int bench_add_method(bench *b, int number)
   return status == DVI_OK ? DONE : library_error(status);
 }
 
+/* Give the degree of a bare loop beside a method, or 0. Methods named twice share one. */
+static int bench_bare_degree(const bench *b, int number)
+{
+  const int degree = b->entry[number].how.transform == NULL ? bare_degree(b->entry[number].method)
+                                                            : 0;
+  for (int i = 0; i < number; i++)
+    if (b->of_bare[i].degree == degree) return 0;
+  return degree;
+}
+
 /* Add bare loops beside the methods that have the same steps, at all of their levels. */
 static int bench_add_bare(bench *b)
 {
@@ -101,9 +111,9 @@ static int bench_add_bare(bench *b)
     return DONE;
   }
   for (int i = 0; i < b->entries && status == DVI_OK; i++) {
-    const int degree = b->entry[i].how.transform == NULL ? bare_degree(b->entry[i].method) : 0;
+    const int degree = bench_bare_degree(b, i);
     if (degree == 0) continue;
-    status = whole_job_of_bare(&b->of_bare[i], degree, &b->motion);
+    status = whole_job_of_bare(&b->of_bare[i], degree, &b->of_entry[i], &b->motion);
     for (int k = 0; k < methods && status == DVI_OK; k++)
       if (b->work.job[k].subject == &b->of_entry[i].subject)
         status = work_add(&b->work, &b->of_bare[i].subject, b->work.job[k].level.refinement);

@@ -182,7 +182,7 @@ static dvi__linear_cost dense_cost(const void *factor, const dvi__pattern *patte
   return (dvi__linear_cost){n * n, 2 * n * n * n / 3};
 }
 
-const dvi__factor_kind dvi__dense_factor = {.name = "dense LU (LAPACK)",
+const dvi__factor_kind dvi__dense_factor = {.name = "dense LU",
                                             .create = dense_create,
                                             .destroy = dense_destroy,
                                             .refactor = dense_refactor,

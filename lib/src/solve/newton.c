@@ -58,9 +58,8 @@ static double relative_change(const dvi__solver *s, const double *x)
 /* Tell whether small unknowns have settled. When the largest unknowns are at roundoff, much smaller
  * ones may not be. Newton's method goes on until each has lost its own error, or none gets
  * better. */
-static int small_ones_settled(dvi__solver *s, const double *x, double *last)
+static int small_ones_settled(double change, double *last)
 {
-  const double change = relative_change(s, x);
   const int settled = change <= 64 * DBL_EPSILON || change >= 0.5 * *last;
   *last = change;
   return settled;
@@ -92,11 +91,10 @@ typedef struct outlook {
  * changes little over the step as a whole. The root of `reach` bounds it with a wide margin where
  * roundings hide it. */
 static void look_ahead(const dvi__solver *s, const dvi__history *history, double correction,
-                       double whole, int kept, const double *x, outlook *now)
+                       double whole, int kept, double part, outlook *now)
 {
-  const double part = s->equations.ahead ? dvi__solver_worst_ratio(s, 0, s->residual, x) : HUGE_VAL;
-  if (!kept && !s->equations.approximate) now->reach = part;
-  now->next = expected_part(history, correction, kept || s->equations.approximate);
+  if (!kept && !s->equations.rough) now->reach = part;
+  now->next = expected_part(history, correction, kept || s->equations.rough);
   if (history->contraction == 0) now->next = fmin(now->next, sqrt(now->reach));
   now->unseen = s->equations.group > 1
                     ? dvi__unseen_part(part)
@@ -106,12 +104,13 @@ static void look_ahead(const dvi__solver *s, const dvi__history *history, double
 /* Tell whether the factor in use serves the next iteration, too. */
 static int keeps_factor(const dvi__solver *s, const dvi__history *history, const outlook *now)
 {
+  const int is_foreseen = s->equations.ahead && !s->equations.rough,
+            most = is_foreseen && !s->equations.renewed ? MOST_KEPT : 2;
   double part = now->next;
-  if (s->equations.renewed) return part * part <= now->unseen;
-  if (!s->equations.ahead || s->equations.dear || history->before == 0)
-    return part * part <= now->unseen || history->before == 0 ||
-           history->last < keep_below * history->before;
-  for (int i = 1; i < MOST_KEPT && part > now->unseen; i++) part *= now->next;
+  if (!s->equations.renewed &&
+      (history->before == 0 || (!is_foreseen && history->last < keep_below * history->before)))
+    return 1;
+  for (int i = 1; i < most && part > now->unseen; i++) part *= now->next;
   return part <= now->unseen;
 }
 
@@ -119,7 +118,7 @@ dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__so
 {
   const dvi__criteria criteria = newton_criteria(s);
   dvi__history history = {0};
-  outlook now = {.reach = HUGE_VAL};
+  outlook now = {.next = HUGE_VAL, .reach = HUGE_VAL};
   double whole, last_relative = HUGE_VAL;
   int kept = 0, growing = 0, settled = 0, converged = 0;
   report->idle = 0;
@@ -134,20 +133,22 @@ dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__so
     dvi__solver_note(s, x, report);
     const dvi__progress progress = dvi__test_correction(report->correction, &history, &criteria,
                                                         whole, size);
-    look_ahead(s, &history, report->correction, whole, kept, x, &now);
+    const int has_settled = converged || progress == DVI__CONVERGED;
+    const double part = s->equations.ahead || has_settled ? relative_change(s, x) : 0;
+    if (s->equations.ahead) look_ahead(s, &history, report->correction, whole, kept, part, &now);
     if (progress != DVI__STALLED && !converged && now.next <= now.unseen) return DVI_OK;
     const int is_small = report->correction <= small_correction * whole,
               is_idle = is_small && history.before > 0 &&
                         report->correction >= idle_ratio * history.before;
-    int at_floor = 0;
+    converged = has_settled;
+    int at_floor = 0; /* its test overwrites the correction */
     report->idle = is_small ? report->idle + is_idle : 0;
     settled = is_small ? settled + (is_idle && !kept) : 0;
     if (progress != DVI__CONVERGED &&
         (settled > 1 || report->correction >= criteria.stagnant * history.before))
       DVI_TRY(dvi__solver_at_floor(s, x, settled > 1, &at_floor));
     if (at_floor) return DVI_OK;
-    converged |= progress == DVI__CONVERGED;
-    if (converged && small_ones_settled(s, x, &last_relative)) return DVI_OK;
+    if (converged && small_ones_settled(part, &last_relative)) return DVI_OK;
     growing = progress == DVI__STALLED ? growing + 1 : 0;
     if (growing == 2 || report->correction > 1e300) break;
     if (wary && report->iterations == 2 && !converged &&

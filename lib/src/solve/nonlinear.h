@@ -57,8 +57,7 @@ struct dvi__equations {
   /* all results are those of the solution, or are corrected to it to first order, so that the next
    * correction need not be seen to be small */
   int ahead;
-  int approximate; /* the Jacobian is exact for short steps alone */
-  int dear;        /* a Jacobian costs as much as many residuals */
+  int rough; /* the Jacobian is exact for short steps alone, and costs as much as many residuals */
   /* The same fixed point iteration in variables of the equations' own, where that is cheaper. NULL
    * if residual and chord serve. */
   void (*fixed_point_begin)(void *of, const double *x);

@@ -166,7 +166,7 @@ int dvi__part_run_points(const dvi__part *part, int count, const double *const *
                          double *const *result)
 {
   _Alignas(4096) double memory[NUMBERS];
-  const double *input[NUMBERS / LEAST];
+  const double *input[DVI__BLOCK_ROWS]; /* a part that is not large has no more */
   const int whole = count / DVI__LANES * DVI__LANES;
   stretch at = {.width = width_for(part, count), .count = count};
   if (at.width == 0) return 0;

@@ -159,15 +159,13 @@ static dvi_status element_create_solver(dvi__stepper *self, dvi__element *own)
   return dvi__solver_create(&equations, self->counters, &own->solver);
 }
 
-/* Create blocks for the ladder in charts. Forces and unknowns of terms may be as large as what the
- * blocks hold, and need the whole Jacobian. */
+/* Create blocks for the ladder in charts. Forces may be as large as what the blocks hold, and need
+ * the whole Jacobian. */
 static dvi_status element_create_blocks(const dvi__stepper *self, dvi__element *own)
 {
   const int s = dvi__action_space_of(own->action).degree;
   dvi__blocks_destroy(&own->blocks);
-  if (!own->centred || !dvi__element_is_ladder(own) || own->has_forces ||
-      dvi__action_unknowns(own->action) > self->system->n * s)
-    return DVI_OK;
+  if (!own->centred || !dvi__element_is_ladder(own) || own->has_forces) return DVI_OK;
   return dvi__blocks_create(&self->system->vv, dvi__action_pattern(own->action), s, &own->blocks);
 }
 
@@ -409,15 +407,11 @@ static dvi_status element_solve(dvi__stepper *self, const dvi__element_place *at
   dvi__element_put(own, at, at->h);
   own->by_blocks = 0;
   if (own->without_hessian != NULL) return element_solve_without(self, at, Y, report);
-  if ((!own->keeps_whole || !dvi__element_is_ladder(own)) &&
+  if ((own->blocks != NULL || !own->keeps_whole || !dvi__element_is_ladder(own)) &&
       element_is_due(own, DVI__SOLVER_FIXED_POINT, &self->memory[DVI__NEWTON_STEPS])) {
-    const dvi_status status = element_solve_by(self, at, DVI__FIXED_POINT, Y, report);
-    update_backoff(self, status, DVI__NEWTON_STEPS, DVI__NEWTON_WAIT);
-    if (status <= 0) return status;
-  }
-  if (own->blocks != NULL &&
-      element_is_due(own, DVI__SOLVER_FIXED_POINT, &self->memory[DVI__NEWTON_STEPS])) {
-    const dvi_status status = element_solve_by_blocks(self, at, Y, report);
+    const dvi_status status = own->blocks != NULL
+                                  ? element_solve_by_blocks(self, at, Y, report)
+                                  : element_solve_by(self, at, DVI__FIXED_POINT, Y, report);
     update_backoff(self, status, DVI__NEWTON_STEPS, DVI__NEWTON_WAIT);
     if (status <= 0) return status;
     own->by_blocks = 0;

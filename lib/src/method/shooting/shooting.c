@@ -146,8 +146,7 @@ static dvi_status shooting_initialise(dvi__stepper *self, const dvi__runge_kutta
                               .row_scale = shooting_row_scale,
                               .noise = dvi__hessian_noise(self->system),
                               .ahead = own->shot != NULL,
-                              .approximate = 1,
-                              .dear = 1};
+                              .rough = 1};
   DVI_TRY(dvi__stationary_create(self, &equations, &own->equations));
   return shooting_allocate(own, (size_t)self->system->n) ? DVI_OK
                                                          : dvi__fail(DVI_NO_MEMORY, "no memory");

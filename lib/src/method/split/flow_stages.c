@@ -369,13 +369,11 @@ dvi_status dvi__flow_stages_path(dvi__flow_stages *own, const double *kept, doub
   long double value[DVI_QUADRATURE_MAX + 2], integral[DVI_QUADRATURE_MAX];
   double *w = own->W;
   flow_polynomials(s, x, value, integral);
-  for (int row = 0; row < 2 * n; row++) {
-    w[row] = w0[row];
-    for (int j = 0; j < s; j++) {
-      double part = 0;
-      for (int k = 0; k < s; k++) part += own->legendre[j * s + k] * (double)integral[k];
-      w[row] += part * G[row * s + j];
-    }
+  memcpy(w, w0, 2 * (size_t)n * sizeof *w);
+  for (int j = 0; j < s; j++) {
+    double part = 0;
+    for (int k = 0; k < s; k++) part += own->legendre[j * s + k] * (double)integral[k];
+    for (int row = 0; row < 2 * n; row++) w[row] += part * G[row * s + j];
   }
   dvi__integrable_begin(own->integrable);
   return dvi__integrable_move(own->integrable,

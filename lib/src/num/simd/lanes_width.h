@@ -2,18 +2,6 @@
  * header once for each width. */
 #include "num/simd/kick_drift_width.h"
 
-/* Give the largest lane of magnitudes, NaN if one is. */
-INLINE double NAME(largest_of)(const NAME(vector) * x)
-{
-  uint64_t bits[WIDTH];
-  double largest;
-  memcpy(bits, x, sizeof bits);
-  for (int half = WIDTH / 2; half > 0; half /= 2)
-    for (int i = 0; i < half; i++) bits[i] = bits[i] > bits[i + half] ? bits[i] : bits[i + half];
-  memcpy(&largest, bits, sizeof largest);
-  return largest;
-}
-
 /* Add matrix_k x_k to sum in WIDTH lanes. */
 INLINE void NAME(add_column)(int lanes, const double *matrix, const double *x, int k,
                              NAME(vector) * sum)

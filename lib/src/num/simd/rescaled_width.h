@@ -1,23 +1,6 @@
 /* The loops of rescaled.c for vectors of WIDTH numbers, after vector_width.h. rescaled.c includes
  * this header once for each width. */
 
-/* Replace largest by the larger magnitude, lane by lane. They are compared as bits, and NaN is
- * above all numbers. */
-INLINE void NAME(above)(NAME(mask) * largest, const NAME(vector) * x)
-{
-  const NAME(mask) magnitude = (NAME(mask)) * x & INT64_MAX, take = magnitude > *largest;
-  *largest = (take & magnitude) | (~take & *largest);
-}
-
-INLINE double NAME(number_above)(const NAME(mask) * largest)
-{
-  int64_t most = 0;
-  for (int i = 0; i < WIDTH; i++) most = (*largest)[i] > most ? (*largest)[i] : most;
-  double number;
-  memcpy(&number, &most, sizeof number);
-  return number;
-}
-
 /* Multiply a row by a matrix, in two sums that do not wait for each other. */
 INLINE void NAME(times_matrix)(const int stages, int lanes, const double *matrix, const double *row,
                                NAME(vector) * product)
@@ -102,20 +85,20 @@ INLINE void NAME(find_places)(const dvi__rescaled_sums *s, const int stages)
 INLINE void NAME(move)(const dvi__rescaled_sums *s, const int stages, double *change,
                        double *largest)
 {
-  NAME(mask) moved_most = {0}, most = {0};
+  NAME(vector) moved_most = {0}, most = {0};
   for (size_t i = 0; i < (size_t)s->n; i++)
     for (int b = 0; b < s->lanes; b += WIDTH) {
       NAME(vector) next, Z;
       NAME(load)(s->next + i * (size_t)s->lanes + (size_t)b, &next);
       NAME(load)(s->Z + i * (size_t)s->lanes + (size_t)b, &Z);
       const NAME(vector) moved = next - Z, Q = s->origin[i] + next;
-      NAME(above)(&moved_most, &moved);
-      NAME(above)(&most, &next);
+      NAME(larger)(&moved_most, &moved);
+      NAME(larger)(&most, &next);
       NAME(store)(s->Z + i * (size_t)s->lanes + (size_t)b, &next, WIDTH);
       NAME(store)(s->Q + i * (size_t)stages + (size_t)b, &Q, stages - b);
     }
-  *change = NAME(number_above)(&moved_most);
-  *largest = NAME(number_above)(&most);
+  *change = NAME(largest_of)(&moved_most);
+  *largest = NAME(largest_of)(&most);
 }
 
 INLINE void NAME(rescaled_iterate)(dvi__rescaled_sums *s, const int stages)

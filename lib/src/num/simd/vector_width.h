@@ -38,3 +38,15 @@ INLINE void NAME(larger)(NAME(vector) * largest, const NAME(vector) * x)
                    take = (NAME(mask))(magnitude > (NAME(mask)) * largest);
   *largest = (NAME(vector))((take & magnitude) | (~take & (NAME(mask)) * largest));
 }
+
+/* Give the largest lane of magnitudes, NaN if one is. */
+INLINE double NAME(largest_of)(const NAME(vector) * x)
+{
+  uint64_t bits[WIDTH];
+  double largest;
+  memcpy(bits, x, sizeof bits);
+  for (int half = WIDTH / 2; half > 0; half /= 2)
+    for (int i = 0; i < half; i++) bits[i] = bits[i] > bits[i + half] ? bits[i] : bits[i + half];
+  memcpy(&largest, bits, sizeof largest);
+  return largest;
+}

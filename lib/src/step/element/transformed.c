@@ -25,6 +25,7 @@
 #include "step/element/fixed_point.h"
 #include "core/memory.h"
 #include "core/status.h"
+#include "num/compensated.h"
 #include "num/simd/lanes.h"
 #include "num/simd/rescaled.h"
 #include "system/rescale/transformed.h"
@@ -217,16 +218,15 @@ void dvi__transformed_path(const dvi__action *a, double *Y)
   dvi__lanes_product(a->n, a->r, a->path_lanes, a->s, s->path, s->sums.u, Y);
 }
 
-/* The error of each sum is Knuth's (1969), sec. 4.2.2. */
 void dvi__transformed_ends(const dvi__action *a, double *dq, double *dq_low, double *dp)
 {
   const stages *s = a->transformed;
   for (size_t i = 0, r = (size_t)a->r; i < (size_t)a->n; i++) {
     dq[i] = dq_low[i] = dp[i] = 0;
     for (size_t k = i * r; k < (i + 1) * r; k++) {
-      const double u = s->sums.u[k], sum = dq[i] + u, back = sum - dq[i];
-      dq_low[i] += (dq[i] - (sum - back)) + (u - back);
-      dq[i] = sum;
+      const dvi__twofold sum = dvi__exact_sum(dq[i], s->sums.u[k]);
+      dq[i] = sum.head;
+      dq_low[i] += sum.tail;
       dp[i] += s->sums.f[k];
     }
   }

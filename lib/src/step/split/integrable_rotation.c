@@ -4,6 +4,7 @@
 #include "step/split/integrable_struct.h"
 #include "core/memory.h"
 #include "core/status.h"
+#include "system/term/term.h"
 
 dvi_status dvi__integrable_find_modes(dvi__integrable *own, dvi_counters *counters)
 {
@@ -22,8 +23,8 @@ dvi_status dvi__integrable_find_modes(dvi__integrable *own, dvi_counters *counte
   return DVI_OK;
 }
 
-static dvi_status rotation_change(dvi__integrable *own, double tau, const double *q,
-                                  const double *p)
+/* Find phi_tau(z) - z, of momenta only where dp is wanted. */
+static void rotate(dvi__integrable *own, double tau, const double *q, const double *p, double *dp)
 {
   const double *square = dvi__modes_squares(own->modes);
   dvi__modes_of_coordinates(own->modes, q, own->y);
@@ -36,19 +37,14 @@ static dvi_status rotation_change(dvi__integrable *own, double tau, const double
     own->w[k] = -tau * c[1] * pull - tau * tau * c[2] * square[k] * w;
   }
   dvi__modes_to_coordinates(own->modes, own->y, own->dq);
-  dvi__modes_to_forces(own->modes, own->w, own->dp);
+  if (dp != NULL) dvi__modes_to_forces(own->modes, own->w, dp);
+}
+
+static dvi_status rotation_change(dvi__integrable *own, double tau, const double *q,
+                                  const double *p)
+{
+  rotate(own, tau, q, p, own->dp);
   return DVI_OK;
-}
-
-/* Copy point k of a batch, and back. */
-static void take_point(int n, int count, int k, const double *batch, double *point)
-{
-  for (int i = 0; i < n; i++) point[i] = batch[i * count + k];
-}
-
-static void put_point(int n, int count, int k, const double *point, double *batch)
-{
-  for (int i = 0; i < n; i++) batch[i * count + k] = point[i];
 }
 
 static dvi_status rotation_move(dvi__integrable *own, const dvi__points *at, double *to_q,
@@ -56,13 +52,14 @@ static dvi_status rotation_move(dvi__integrable *own, const dvi__points *at, dou
 {
   double *q = own->z, *p = own->f;
   for (int k = 0; k < at->count; k++) {
-    take_point(own->n, at->count, k, at->q, q);
-    take_point(own->n, at->count, k, at->p, p);
-    DVI_TRY(rotation_change(own, at->tau[k], q, p));
+    dvi__gather_point(own->n, at->count, k, at->q, q);
+    dvi__gather_point(own->n, at->count, k, at->p, p);
+    rotate(own, at->tau[k], q, p, to_p != NULL ? own->dp : NULL);
     for (int i = 0; i < own->n; i++) q[i] += own->dq[i];
+    dvi__scatter_result(own->n, at->count, k, q, to_q);
+    if (to_p == NULL) continue;
     for (int i = 0; i < own->n; i++) p[i] += own->dp[i];
-    put_point(own->n, at->count, k, q, to_q);
-    if (to_p != NULL) put_point(own->n, at->count, k, p, to_p);
+    dvi__scatter_result(own->n, at->count, k, p, to_p);
   }
   return DVI_OK;
 }
@@ -74,7 +71,7 @@ static dvi_status rotation_pullback(dvi__integrable *own, const dvi__points *at,
   const double *square = dvi__modes_squares(own->modes);
   (void)lambda_p;
   for (int k = 0; k < at->count; k++) {
-    take_point(own->n, at->count, k, lambda_q, own->f);
+    dvi__gather_point(own->n, at->count, k, lambda_q, own->f);
     dvi__modes_of_forces(own->modes, own->f, own->y);
     for (int j = 0; j < own->n; j++) {
       double c[4];
@@ -84,8 +81,8 @@ static dvi_status rotation_pullback(dvi__integrable *own, const dvi__points *at,
     }
     dvi__modes_to_forces(own->modes, own->y, own->dp);
     dvi__modes_to_coordinates(own->modes, own->w, own->dq);
-    put_point(own->n, at->count, k, own->dp, by_q);
-    put_point(own->n, at->count, k, own->dq, by_p);
+    dvi__scatter_result(own->n, at->count, k, own->dp, by_q);
+    dvi__scatter_result(own->n, at->count, k, own->dq, by_p);
   }
   return DVI_OK;
 }

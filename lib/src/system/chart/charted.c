@@ -14,9 +14,7 @@ static dvi_status make_charted_system(dvi__charted *x, dvi_holonomic *rows)
   const int reduced = x->reduced.bodies != NULL;
   const dvi_lagrangian lagrangian = {
       .value_batch = reduced ? dvi__reduced_value : dvi__charted_value,
-      .gradient_batch = reduced              ? dvi__reduced_gradient
-                        : x->inertia != NULL ? dvi__charted_gradient_apart
-                                             : dvi__charted_gradient,
+      .gradient_batch = reduced ? dvi__reduced_gradient : dvi__charted_gradient,
       .hessian_batch = reduced ? dvi__reduced_hessian : dvi__charted_hessian,
       .qq = {x->qq.start, x->qq.row},
       .qv = {x->qv.start, x->qv.row},

@@ -244,9 +244,9 @@ static void gradient_of_slot(dvi__charted *x, int c, int count, int from, int gr
     for (int i = 0; i < 3; i++) x->moment[(3 * c + i) * x->capacity + from] = N[i];
 }
 
-static dvi_status gradient_of_group(dvi__charted *x, int count, int first, int group,
-                                    const double *t, const double *xi, const double *rate,
-                                    double *L_xi, double *L_rate)
+dvi_status dvi__charted_gradient_apart(dvi__charted *x, int count, int first, int group,
+                                       const double *t, const double *xi, const double *rate,
+                                       double *L_xi, double *L_rate)
 {
   const int slots = x->base->slot_count;
   for (int c = 0; c < slots; c++)
@@ -257,17 +257,4 @@ static dvi_status gradient_of_group(dvi__charted *x, int count, int first, int g
     for (int k = 0; k < group; k++)
       gradient_of_slot(x, c, count, first + k, group, k, xi, rate, L_xi, L_rate);
   return DVI_OK;
-}
-
-int dvi__charted_gradient_apart(int count, const double *t, const double *xi, const double *rate,
-                                double *L_xi, double *L_rate, void *user)
-{
-  dvi__charted *x = user;
-  dvi_status status = DVI_OK;
-  x->counters->gradients -= count; /* the calling evaluator counts the same points */
-  for (int first = 0; first < count && status == DVI_OK; first += DVI__GROUP)
-    status = gradient_of_group(x, count, first,
-                               count - first < DVI__GROUP ? count - first : DVI__GROUP, t, xi, rate,
-                               L_xi, L_rate);
-  return dvi__charted_verdict(x, status);
 }

@@ -143,18 +143,24 @@ void dvi__charted_find_moments(dvi__charted *x, int first, int group)
   }
 }
 
+static dvi_status gradient_of_group(dvi__charted *x, int count, int first, int group,
+                                    const double *t, const double *xi, const double *rate,
+                                    double *L_xi, double *L_rate)
+{
+  DVI_TRY(dvi__charted_forces(x, count, first, group, t, xi, rate));
+  pull_back_gradient(x, count, first, group, xi, rate, L_xi, L_rate);
+  if (dvi__charted_on_path(x, count)) dvi__charted_find_moments(x, first, group);
+  return DVI_OK;
+}
+
 int dvi__charted_gradient(int count, const double *t, const double *xi, const double *rate,
                           double *L_xi, double *L_rate, void *user)
 {
   dvi__charted *x = user;
   dvi_status status = DVI_OK;
-  x->counters->gradients -= count;
-  for (int first = 0; first < count && status == DVI_OK; first += DVI__GROUP) {
-    const int group = smaller_batch(DVI__GROUP, count - first);
-    status = dvi__charted_forces(x, count, first, group, t, xi, rate);
-    if (status == DVI_OK) pull_back_gradient(x, count, first, group, xi, rate, L_xi, L_rate);
-    if (status == DVI_OK && dvi__charted_on_path(x, count))
-      dvi__charted_find_moments(x, first, group);
-  }
+  x->counters->gradients -= count; /* the calling evaluator counts the same points */
+  for (int first = 0; first < count && status == DVI_OK; first += DVI__GROUP)
+    status = (x->inertia != NULL ? dvi__charted_gradient_apart : gradient_of_group)(
+        x, count, first, smaller_batch(DVI__GROUP, count - first), t, xi, rate, L_xi, L_rate);
   return dvi__charted_verdict(x, status);
 }

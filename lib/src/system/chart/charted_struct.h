@@ -1,5 +1,4 @@
-/* The inside of a charted system, shared by charted.c, charted_pattern.c, charted_lagrangian.c,
- * charted_hessian.c, charted_path.c and charted_reduced.c. */
+/* The inside of a charted system, shared by the files charted*.c. */
 #ifndef DVI_SYSTEM_CHART_CHARTED_STRUCT_H
 #define DVI_SYSTEM_CHART_CHARTED_STRUCT_H
 #include "core/status.h"
@@ -154,9 +153,10 @@ dvi_status dvi__reduced_place(dvi__charted *charted);
 /* Read the masses if the mass couples no two factors. */
 dvi_status dvi__charted_find_apart(dvi__charted *charted);
 
-/* The callback of the new system for such masses. */
-int dvi__charted_gradient_apart(int count, const double *t, const double *xi, const double *rate,
-                                double *L_xi, double *L_rate, void *user);
+/* Compute the gradient at a group of points from `first` on, for such masses. */
+dvi_status dvi__charted_gradient_apart(dvi__charted *charted, int count, int first, int group,
+                                       const double *t, const double *xi, const double *rate,
+                                       double *L_xi, double *L_rate);
 
 /* Compute the change of a body's angular momentum on a path, in the frame of the centre. A moving x
  * with momentum changes the angular one by Ad*. */
