@@ -226,7 +226,8 @@ static void gradient_of_slot(dvi__charted *x, int c, int count, int from, int gr
                              const double *xi, const double *rate, double *L_xi, double *L_rate)
 {
   const dvi__factor_slot *slot = &x->base->slots[c];
-  double at[3], u[3], y[DVI__CHART_POINT], a[DVI__CHART_POINT], in_xi[3], in_rate[3], N[3] = {0};
+  double at[3], u[3], y[DVI__CHART_POINT] = {0}, a[DVI__CHART_POINT] = {0}, in_xi[3], in_rate[3],
+                      N[3] = {0};
   read_local(slot, (size_t)count, (size_t)from, xi, at);
   read_local(slot, (size_t)count, (size_t)from, rate, u);
   for (int i = 0; i < dvi__chart_stored(slot->kind); i++) {
