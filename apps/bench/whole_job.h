@@ -35,8 +35,8 @@ void whole_job_of_method(whole_job *job, motion_study *study, const char *method
 /** Make the job of a peer. Its levels are tolerances. DVI_NO_MEMORY. */
 dvi_status whole_job_of_peer(whole_job *job, int peer, const judged_motion *motion);
 
-/** Make the job of a bare loop of Gauss' method, beside a method with the same steps. Its levels are
- * steps. DVI_NO_MEMORY. */
+/** Make the job of a bare loop of Gauss' method, beside a method with the same steps. Its levels
+ * are steps. DVI_NO_MEMORY. */
 dvi_status whole_job_of_bare(whole_job *job, int degree, const whole_job *beside,
                              const judged_motion *motion);
 

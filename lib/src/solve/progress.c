@@ -28,8 +28,8 @@ static const double hardly = 0.98;
 #include "num/simd/each_width.h"
 
 /* The loops' test of one problem, written with branches, because these are foreseen in one
- * iteration. A step of galerkin:degree=8 on kepler takes an eighth less than by a loop of one. Update
- * the history by one correction. */
+ * iteration. A step of galerkin:degree=8 on kepler takes an eighth less than by a loop of one.
+ * Update the history by one correction. */
 static inline double update_alone(double correction, double noise, const dvi__criteria *criteria,
                                   dvi__history *t)
 {

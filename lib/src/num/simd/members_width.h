@@ -1,6 +1,6 @@
 /* The loops of members.c and members_chord.c for vectors of WIDTH numbers, after vector_width.h.
- * They include this header once for each width. The last few of a row are done one by one, by the same functions
- * at WIDTH 1. */
+ * They include this header once for each width. The last few of a row are done one by one, by the
+ * same functions at WIDTH 1. */
 
 /* Add matrix_k x_k to sum, with x_k and x_(k+1) `width` apart. */
 INLINE void NAME(add_term)(int lanes, const double *matrix, int width, const double *x, int k,
