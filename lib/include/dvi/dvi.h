@@ -31,6 +31,7 @@
 #include <dvi/reference.h>
 #include <dvi/regge.h>
 #include <dvi/rotations.h>
+#include <dvi/record.h>
 #include <dvi/run.h>
 #include <dvi/schroedinger.h>
 #include <dvi/sensitivity.h>

@@ -1,0 +1,264 @@
+/* Recordings of runs. An observer of dvi_run keeps the rows, and events in front of those of the
+ * program keep what they find. */
+#include <dvi/record.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "integrator/integrator_struct.h"
+#include "record/recording.h"
+
+enum {
+  KNOWN_PARTS = (1 << DVI__PARTS) - 1,
+  /* parts that rows at given times may have */
+  PATH_PARTS = DVI_RECORD_T | DVI_RECORD_Q | DVI_RECORD_P | DVI_RECORD_V | DVI_RECORD_INVARIANTS |
+               DVI_RECORD_STEP,
+  FIRST_ROWS = 256
+};
+/* More rows than these are not reserved for a run whose steps are known. */
+static const double most_reserved = 1e8;
+
+/* An event of the program. */
+typedef struct watched_event {
+  struct record *record;
+  const dvi_event *event;
+  int index;
+} watched_event;
+
+typedef struct record {
+  dvi_integrator *integrator;
+  const dvi_system *system;
+  const dvi_run_options *run;
+  dvi_record_options options;
+  dvi_recording *recording;
+  dvi_event *event;       /* [run->event_count] the events of the run below */
+  watched_event *watched; /* [run->event_count] */
+  double *point;          /* [nq+2*nv] q, v and p of the path at a given time */
+  int64_t times_done;
+  long visits;       /* of the observer: the start, and every step where times are given */
+  dvi_status status; /* of a row or an event that failed, and its sentence */
+  char sentence[DVI__SENTENCE_SIZE];
+} record;
+
+/* ---- rows ---- */
+
+static void copy_part(const record *r, dvi_record_part part, int count, const double *from)
+{
+  double *row = dvi__recording_row(r->recording, part);
+  if (row != NULL) memcpy(row, from, (size_t)count * sizeof *row);
+}
+
+static void set_part(const record *r, dvi_record_part part, double number)
+{
+  double *row = dvi__recording_row(r->recording, part);
+  if (row != NULL) *row = number;
+}
+
+/* Evaluate what the state alone does not have. */
+static dvi_status measure_state(const record *r)
+{
+  dvi_integrator *I = r->integrator;
+  double *v = dvi__recording_row(r->recording, DVI_RECORD_V),
+         *invariants = dvi__recording_row(r->recording, DVI_RECORD_INVARIANTS),
+         *constraint = dvi__recording_row(r->recording, DVI_RECORD_CONSTRAINT),
+         *reactions = dvi__recording_row(r->recording, DVI_RECORD_REACTIONS);
+  if (v != NULL) DVI_TRY(dvi__integrator_velocity(I, v));
+  if (invariants != NULL) DVI_TRY(dvi_integrator_invariants(I, invariants));
+  if (constraint != NULL) DVI_TRY(dvi_integrator_constraint(I, constraint));
+  if (reactions != NULL) DVI_TRY(dvi_integrator_reactions(I, reactions));
+  return DVI_OK;
+}
+
+/* Keep the present state. */
+static dvi_status record_state(const record *r)
+{
+  const dvi_integrator *I = r->integrator;
+  DVI_TRY(dvi__recording_open_row(r->recording));
+  set_part(r, DVI_RECORD_T, dvi_integrator_time(I));
+  set_part(r, DVI_RECORD_STEP, dvi_integrator_last_step(I));
+  copy_part(r, DVI_RECORD_Q, r->recording->nq, dvi_integrator_q(I));
+  copy_part(r, DVI_RECORD_P, r->recording->nv, dvi_integrator_p(I));
+  DVI_TRY(measure_state(r));
+  r->recording->rows++;
+  return DVI_OK;
+}
+
+/* Keep the point of the last step's path at t. */
+static dvi_status record_point(const record *r, double t)
+{
+  const int nq = r->recording->nq, nv = r->recording->nv;
+  double *q = r->point, *v = q + nq, *p = v + nv;
+  double *invariants = dvi__recording_row(r->recording, DVI_RECORD_INVARIANTS);
+  DVI_TRY(dvi_integrator_interpolate(r->integrator, t, q, v));
+  if (invariants != NULL || dvi__recording_row(r->recording, DVI_RECORD_P) != NULL)
+    DVI_TRY(dvi_system_momentum(r->system, t, q, v, p));
+  set_part(r, DVI_RECORD_T, t);
+  set_part(r, DVI_RECORD_STEP, dvi_integrator_last_step(r->integrator));
+  copy_part(r, DVI_RECORD_Q, nq, q);
+  copy_part(r, DVI_RECORD_V, nv, v);
+  copy_part(r, DVI_RECORD_P, nv, p);
+  if (invariants != NULL) DVI_TRY(dvi_system_invariants(r->system, t, q, p, invariants));
+  r->recording->rows++;
+  return DVI_OK;
+}
+
+/* Keep the points of the last step's path at the given times, in the run's direction. The start is
+ * the present state. */
+static dvi_status record_times(record *r)
+{
+  const double now = dvi_integrator_time(r->integrator), forward = r->run->h > 0 ? 1 : -1;
+  for (; r->times_done < r->options.time_count; r->times_done++) {
+    const double t = r->options.times[r->times_done];
+    if (forward * (t - now) > 0) return DVI_OK;
+    DVI_TRY(dvi__recording_open_row(r->recording));
+    DVI_TRY(t == now ? record_state(r) : record_point(r, t));
+  }
+  return DVI_OK;
+}
+
+/* ---- the run ---- */
+
+/* Remember why a row or an event was not kept, and end the run. */
+static int refuse(record *r, dvi_status status, const char *what)
+{
+  r->status = status;
+  (void)snprintf(r->sentence, sizeof r->sentence, "record: no %s at t = %.9g: %s", what,
+                 dvi_integrator_time(r->integrator), dvi_last_error());
+  return -1;
+}
+
+static int record_observe(dvi_integrator *integrator, void *user)
+{
+  record *r = user;
+  const long every = r->options.times != NULL && r->run->every > 0 ? r->run->every : 1;
+  const dvi_status status = r->options.times != NULL ? record_times(r) : record_state(r);
+  if (status != DVI_OK) return refuse(r, status, "row");
+  if (r->run->observe == NULL) return 0;
+  const int at_end = dvi_integrator_time(integrator) == r->run->t_end;
+  return r->visits++ % every == 0 || at_end ? r->run->observe(integrator, r->run->user) : 0;
+}
+
+static int watched_value(double t, const double *q, const double *v, double *g, void *user)
+{
+  const dvi_event *event = ((const watched_event *)user)->event;
+  return event->value(t, q, v, g, event->user);
+}
+
+static int watched_occurred(double t, const double *q, const double *v, void *user)
+{
+  const watched_event *w = user;
+  const dvi_status status = dvi__recording_add_event(w->record->recording, w->index, t, q, v);
+  if (status != DVI_OK) return refuse(w->record, status, "event");
+  return w->event->occurred != NULL ? w->event->occurred(t, q, v, w->event->user) : 0;
+}
+
+static void watch_events(record *r)
+{
+  for (int k = 0; k < r->run->event_count; k++) {
+    r->watched[k] = (watched_event){.record = r, .event = &r->run->events[k], .index = k};
+    r->event[k] = r->run->events[k];
+    if (r->event[k].value != NULL) r->event[k].value = watched_value;
+    r->event[k].occurred = watched_occurred;
+    r->event[k].user = &r->watched[k];
+  }
+}
+
+static dvi_status run_recorded(record *r)
+{
+  dvi_run_options run = *r->run;
+  run.observe = record_observe;
+  run.user = r;
+  if (r->options.times != NULL) run.every = 1;
+  if (run.event_count > 0 && run.events != NULL) {
+    watch_events(r);
+    run.events = r->event;
+  }
+  const dvi_status status = dvi_run(r->integrator, &run, &r->recording->report);
+  return r->status != DVI_OK ? dvi__fail(r->status, "%s", r->sentence) : status;
+}
+
+/* ---- what is asked for ---- */
+
+static dvi_status check_parts(const record *r)
+{
+  const unsigned parts = r->options.parts;
+  if ((parts & ~(unsigned)KNOWN_PARTS) != 0)
+    return dvi__fail(DVI_BAD_ARGUMENT, "record: parts = %#x has unknown ones; %#x are all", parts,
+                     (unsigned)KNOWN_PARTS);
+  if (r->options.times != NULL && (parts & ~(unsigned)PATH_PARTS) != 0)
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "record: constraint and reactions have no rows at given times; record them "
+                     "after steps");
+  return DVI_OK;
+}
+
+static dvi_status check_times(const record *r)
+{
+  const int64_t count = r->options.time_count;
+  const double *t = r->options.times, forward = r->run->h > 0 ? 1 : -1;
+  if (count < 0 || (count > 0) != (t != NULL))
+    return dvi__fail(DVI_BAD_ARGUMENT, "record: %lld times, and their list is %s",
+                     (long long)count, t != NULL ? "given" : "NULL");
+  for (int64_t k = 0; k < count; k++) {
+    const double before = k > 0 ? t[k - 1] : dvi_integrator_time(r->integrator);
+    if (!isfinite(t[k]) || forward * (t[k] - before) < 0 || forward * (r->run->t_end - t[k]) < 0)
+      return dvi__fail(DVI_BAD_ARGUMENT,
+                       "record: time %lld is %.17g; times must go on from %.17g to %.17g",
+                       (long long)k, t[k], before, r->run->t_end);
+  }
+  return DVI_OK;
+}
+
+/* Count the rows to reserve: those of the run if its steps are known. */
+static int64_t rows_expected(const record *r)
+{
+  const double every = r->run->every > 0 ? (double)r->run->every : 1,
+               way = r->run->t_end - dvi_integrator_time(r->integrator),
+               rows = floor(way / r->run->h / every) + 3;
+  if (r->options.times != NULL) return r->options.time_count;
+  if (dvi_integrator_chooses_steps(r->integrator) || !(rows >= 3 && rows <= most_reserved))
+    return FIRST_ROWS;
+  return (int64_t)rows;
+}
+
+static dvi_status reserve(record *r)
+{
+  const size_t events = r->run->event_count > 0 ? (size_t)r->run->event_count : 0;
+  r->event = DVI_NEW(dvi_event, events);
+  r->watched = DVI_NEW(watched_event, events);
+  r->point = DVI_NEW(double, dvi_system_nq(r->system) + 2 * dvi_system_nv(r->system));
+  if (r->event == NULL || r->watched == NULL || r->point == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "record: no memory for %zu events and a point", events);
+  return dvi__recording_create(r->system, r->options.parts, rows_expected(r), &r->recording);
+}
+
+static void release(record *r)
+{
+  dvi__release(r->event);
+  dvi__release(r->watched);
+  dvi__release(r->point);
+}
+
+dvi_status dvi_record(dvi_integrator *integrator, const dvi_run_options *run,
+                      const dvi_record_options *options, dvi_recording **recording)
+{
+  if (recording == NULL || integrator == NULL || run == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "record: an argument is NULL");
+  *recording = NULL;
+  record r = {.integrator = integrator, .system = dvi_integrator_system(integrator), .run = run};
+  if (options != NULL) r.options = *options;
+  if (r.options.parts == 0) r.options.parts = DVI_RECORD_Q | DVI_RECORD_P;
+  r.options.parts |= DVI_RECORD_T;
+  if (options != NULL && options->size != sizeof *options)
+    return dvi__fail(DVI_BAD_ARGUMENT, "record: set options.size to sizeof(dvi_record_options)");
+  DVI_TRY(check_parts(&r));
+  DVI_TRY(check_times(&r));
+  dvi_status status = reserve(&r);
+  if (status == DVI_OK) status = run_recorded(&r);
+  release(&r);
+  *recording = r.recording;
+  return status;
+}

@@ -1,0 +1,85 @@
+"""Build dvi._dvi, the C part of the package, by cffi in API mode.
+
+The public headers are the declarations: the C preprocessor leaves of them what cffi reads. The
+library is found by pkg-config (dvi-scene). DVI_INCLUDE and DVI_LIBRARY name the folders of a build
+that is not installed.
+"""
+import os
+import pathlib
+import re
+import subprocess
+import tempfile
+
+import cffi
+
+# Headers with functions in them, which cffi does not read. Nothing in the package needs them.
+INLINE = ["TAYLOR", "SINES", "NUMBER"]
+STANDARD = ["math", "stdarg", "stddef", "stdint", "string"]
+
+CDEF = """
+dvi_status interruptible_record(dvi_integrator *, const dvi_run_options *,
+                                const dvi_record_options *, dvi_recording **, int *interrupted);
+"""
+
+SOURCE = r"""
+#include <dvi/dvi.h>
+#include <dvi/scene.h>
+#include <signal.h>
+
+static volatile int cancelled;
+
+static void cancel(int number) { (void)number; cancelled = 1; }
+
+/* Record a run that Ctrl-C ends after its step. */
+static dvi_status interruptible_record(dvi_integrator *integrator, const dvi_run_options *run,
+                                       const dvi_record_options *options,
+                                       dvi_recording **recording, int *interrupted)
+{
+  dvi_run_options own = *run;
+  void (*before)(int) = signal(SIGINT, cancel);
+  cancelled = 0;
+  own.cancel = &cancelled;
+  const dvi_status status = dvi_record(integrator, &own, options, recording);
+  if (before != SIG_ERR) (void)signal(SIGINT, before);
+  *interrupted = cancelled;
+  return status;
+}
+"""
+
+
+def flags(option):
+    """Return what pkg-config says, without the option's two letters."""
+    said = subprocess.run(["pkg-config", option, "dvi-scene"], capture_output=True, text=True)
+    return [word[2:] for word in said.stdout.split()]
+
+
+def folders(variable, option):
+    """Return the folder that the environment names, or those of the installed library."""
+    named = os.environ.get(variable)
+    return [named] if named else flags(option)
+
+
+def declarations(include):
+    """Return the declarations of all public headers."""
+    with tempfile.TemporaryDirectory() as folder:
+        for name in STANDARD:
+            pathlib.Path(folder, name + ".h").touch()
+        command = [os.environ.get("CC", "cc"), "-E", "-P", "-nostdinc", "-I" + folder]
+        command += ["-I" + path for path in include]
+        command += [f"-DDVI_{name}_H" for name in INLINE] + ["-"]
+        text = "#include <dvi/dvi.h>\n#include <dvi/scene.h>\n"
+        said = subprocess.run(command, input=text, capture_output=True, text=True, check=True)
+    # cffi cannot compile pointers to constant arrays, and leaves such members out.
+    return re.sub(r"const \w+ \(\*\w+\)\[\d\];", "...;", said.stdout)
+
+
+include = folders("DVI_INCLUDE", "--cflags-only-I") or ["/usr/local/include", "/usr/include"]
+library = folders("DVI_LIBRARY", "--libs-only-L")
+ffibuilder = cffi.FFI()
+ffibuilder.cdef(declarations(include))
+ffibuilder.cdef(CDEF)
+ffibuilder.set_source("dvi._dvi", SOURCE, include_dirs=include, library_dirs=library,
+                      runtime_library_dirs=library, libraries=["dvi-scene", "dvi"])
+
+if __name__ == "__main__":
+    ffibuilder.compile(verbose=False)

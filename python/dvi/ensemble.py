@@ -1,0 +1,72 @@
+"""Ensembles: many members of one method, advanced by one call."""
+import numpy as np
+
+from dvi._dvi import ffi, lib
+from dvi._library import numbers
+from dvi.errors import check
+
+
+class Ensemble:
+    """Members of one system that differ in their starts.
+
+    q [nq, members] and p [nv, members] are arrays of all members.
+    """
+
+    def __init__(self, system, method, members, threads=1):
+        options = ffi.new("dvi_ensemble_options *", {"members": members, "threads": threads})
+        made = ffi.new("dvi_ensemble **")
+        check(lib.dvi_ensemble_create(system.pointer, method.encode(), options, made))
+        self.pointer = ffi.gc(made[0], lambda old: lib.dvi_ensemble_destroy(
+            ffi.new("dvi_ensemble **", old)))
+        self.system, self.members = system, members
+
+    def _check(self, status):
+        self.system.raise_failure()
+        check(status)
+
+    def _given(self, rows, count, name):
+        made = np.ascontiguousarray(rows, dtype=float)
+        if made.shape != (count, self.members):
+            raise ValueError(f"{name} has the shape {made.shape}; ({count}, {self.members}) is "
+                             "needed")
+        return made
+
+    def start(self, q, v=None, p=None, t=0.0):
+        """Put all members at time t in q [nq, members] with v or p [nv, members]."""
+        if (v is None) == (p is None):
+            raise TypeError("a start needs q with either v or p")
+        q = self._given(q, self.system.nq, "q")
+        by = lib.dvi_ensemble_start if p is not None else lib.dvi_ensemble_start_velocity
+        other = self._given(p if p is not None else v, self.system.nv, "p" if v is None else "v")
+        self._check(by(self.pointer, t, numbers(q), numbers(other)))
+        return self
+
+    def advance(self, h, steps):
+        """Take steps with every member. Raises for a member that fails, when all others are done."""
+        self._check(lib.dvi_ensemble_advance(self.pointer, h, steps))
+        return self
+
+    def record(self, h, steps, every=1):
+        """Take steps, and return t [rows], q [rows, nq, members] and p [rows, nv, members]."""
+        rows = steps // every + 1
+        t = np.empty((rows, self.members))
+        q, p = (np.empty((rows, n, self.members)) for n in (self.system.nq, self.system.nv))
+        for row in range(rows):
+            if row > 0:
+                self.advance(h, every)
+            self._check(lib.dvi_ensemble_state(self.pointer, numbers(t[row]), numbers(q[row]),
+                                               numbers(p[row])))
+        return t[:, 0], q, p
+
+    def _state(self, which):
+        shape = (self.members,) if which == 0 else (self.system.nq if which == 1 else
+                                                    self.system.nv, self.members)
+        made = np.empty(shape)
+        arrays = [ffi.NULL] * 3
+        arrays[which] = numbers(made)
+        self._check(lib.dvi_ensemble_state(self.pointer, *arrays))
+        return made
+
+    t = property(lambda self: self._state(0), doc="The times of the members.")
+    q = property(lambda self: self._state(1), doc="The coordinates [nq, members].")
+    p = property(lambda self: self._state(2), doc="The momenta [nv, members].")
