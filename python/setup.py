@@ -1,9 +1,9 @@
-"""The C part of the package is built by cffi."""
+"""The C part of the package is built by cffi. The version is that of the library."""
 import pathlib
 import re
 
 from setuptools import setup
 
-cmake = (pathlib.Path(__file__).resolve().parent.parent / "CMakeLists.txt").read_text()
-setup(version=re.search(r"project\(\w+\s+VERSION\s+([\d.]+)", cmake).group(1),
-      cffi_modules=["build_dvi.py:ffibuilder"])
+header = pathlib.Path(__file__).resolve().parent.parent / "lib/include/dvi/version.h"
+parts = re.findall(r"#define DVI_VERSION_(?:MAJOR|MINOR|PATCH) (\d+)", header.read_text())
+setup(version=".".join(parts), cffi_modules=["build_dvi.py:ffibuilder"])

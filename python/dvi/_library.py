@@ -27,6 +27,30 @@ def vector(given, size, name):
     return made
 
 
+class Owned:
+    """An object of the library, destroyed when neither it nor an object made of it is in use.
+
+    The collector of cycles finalises objects in any order, so users are counted here.
+    """
+
+    def __init__(self, kind, pointer, of=None):
+        self.kind, self.pointer, self.of = kind, pointer, of
+        self.users = 1
+        if of is not None:
+            of.users += 1
+
+    def release(self):
+        """End one use."""
+        self.users -= 1
+        if self.users > 0:
+            return
+        getattr(lib, f"dvi_{self.kind}_destroy")(ffi.new(f"dvi_{self.kind} **", self.pointer))
+        if self.of is not None:
+            self.of.release()
+
+    __del__ = release
+
+
 def array(pointer, shape, owner):
     """Return an array on memory of the library, which keeps the owner of the memory alive."""
     count = int(np.prod(shape))

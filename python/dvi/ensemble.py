@@ -2,7 +2,7 @@
 import numpy as np
 
 from dvi._dvi import ffi, lib
-from dvi._library import numbers
+from dvi._library import Owned, numbers
 from dvi.errors import check
 
 
@@ -16,9 +16,8 @@ class Ensemble:
         options = ffi.new("dvi_ensemble_options *", {"members": members, "threads": threads})
         made = ffi.new("dvi_ensemble **")
         check(lib.dvi_ensemble_create(system.pointer, method.encode(), options, made))
-        self.pointer = ffi.gc(made[0], lambda old: lib.dvi_ensemble_destroy(
-            ffi.new("dvi_ensemble **", old)))
-        self.system, self.members = system, members
+        self._owned = Owned("ensemble", made[0], system.owned)
+        self.pointer, self.system, self.members = made[0], system, members
 
     def _check(self, status):
         self.system.raise_failure()

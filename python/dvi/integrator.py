@@ -2,7 +2,7 @@
 import numpy as np
 
 from dvi._dvi import ffi, lib
-from dvi._library import numbers, text, vector
+from dvi._library import Owned, numbers, text, vector
 from dvi.errors import check
 from dvi.recording import record
 
@@ -17,9 +17,8 @@ class Integrator:
     def __init__(self, system, method):
         made = ffi.new("dvi_integrator **")
         check(lib.dvi_integrator_create(system.pointer, method.encode(), made))
-        self.pointer = ffi.gc(made[0], lambda old: lib.dvi_integrator_destroy(
-            ffi.new("dvi_integrator **", old)))
-        self.system = system  # it must outlive the integrator
+        self._owned = Owned("integrator", made[0], system.owned)
+        self.pointer, self.system = made[0], system
 
     def _check(self, status):
         self.system.raise_failure()

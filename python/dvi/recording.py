@@ -4,7 +4,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dvi._dvi import ffi, lib
-from dvi._library import array, numbers
+from dvi._library import Owned, array, numbers
 from dvi.errors import error
 
 PARTS = {"q": lib.DVI_RECORD_Q, "p": lib.DVI_RECORD_P, "v": lib.DVI_RECORD_V,
@@ -35,8 +35,8 @@ class Run:
     def __init__(self, system, method, recording, names):
         self.system, self.method = system, method
         self._part = {"t": lib.DVI_RECORD_T, **PARTS}
-        self._recording = recording
-        report = lib.dvi_recording_report(recording)
+        self._owned, self._recording = recording, recording.pointer
+        report = lib.dvi_recording_report(self._recording)
         self.steps, self.end = report.steps, ENDS[report.end]
         self.t = self._rows(lib.DVI_RECORD_T)[:, 0]
         for name, part in PARTS.items():
@@ -55,7 +55,7 @@ class Run:
             return None
         pointer = ffi.cast("double *", pointer)
         return array(pointer, (lib.dvi_recording_rows(self._recording), width[0]),
-                     self._recording)
+                     self._owned)
 
     def _event(self, i, names):
         event = lib.dvi_recording_event(self._recording, i)
@@ -131,11 +131,10 @@ def record(integrator, h, t_end, every=1, times=None, parts=USUAL, events=()):
     made, interrupted = ffi.new("dvi_recording **"), ffi.new("int *")
     status = lib.interruptible_record(integrator.pointer, run, options, made, interrupted)
     failure = error(status) if status != lib.DVI_OK else None
-    recording = ffi.gc(made[0], lambda old: lib.dvi_recording_destroy(
-        ffi.new("dvi_recording **", old))) if made[0] != ffi.NULL else None
+    recording = Owned("recording", made[0]) if made[0] != ffi.NULL else None
     system.raise_failure()
     result = Run(system, integrator.method, recording, [name for name, _ in events]) \
-        if recording is not None and lib.dvi_recording_rows(recording) > 0 else None
+        if recording is not None and lib.dvi_recording_rows(made[0]) > 0 else None
     if interrupted[0]:
         raise KeyboardInterrupt
     if failure is not None:

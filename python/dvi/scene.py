@@ -4,7 +4,7 @@ import pathlib
 import numpy as np
 
 from dvi._dvi import ffi, lib
-from dvi._library import text
+from dvi._library import Owned, text
 from dvi.errors import error
 from dvi.integrator import Integrator
 from dvi.recording import record
@@ -40,8 +40,7 @@ class Scene(System):
                                      message, 4096)
         if status != lib.DVI_OK:
             raise error(status, text(message))
-        self.scene = ffi.gc(scene[0], lambda old: lib.dvi_scene_destroy(
-            ffi.new("dvi_scene **", old)))
+        self.scene, self.owned = scene[0], Owned("scene", scene[0])
         self._plan = lib.dvi_scene_plan_of(self.scene)
         pointer = lib.dvi_scene_system(self.scene)
         if pointer == ffi.NULL:

@@ -3,7 +3,7 @@ import numpy as np
 
 from dvi import _sympy
 from dvi._dvi import ffi, lib
-from dvi._library import numbers, text, vector
+from dvi._library import Owned, numbers, text, vector
 from dvi.errors import check
 from dvi.recording import record
 
@@ -40,9 +40,8 @@ class System:
             terms.lagrangian = self._lagrangian(n, lagrangian)
         made = ffi.new("dvi_system **")
         check(lib.dvi_system_create(terms, made))
-        pointer = ffi.gc(made[0], lambda system: lib.dvi_system_destroy(
-            ffi.new("dvi_system **", system)))
-        self._adopt(pointer, names or [f"q{i + 1}" for i in range(n)])
+        self.owned = Owned("system", made[0])
+        self._adopt(made[0], names or [f"q{i + 1}" for i in range(n)])
 
     @classmethod
     def of_lagrangian(cls, lagrangian, coordinates, time=None, **parameters):

@@ -1,0 +1,157 @@
+"""The package gives the library's numbers, and its sentences."""
+import pathlib
+import pickle
+
+import numpy as np
+import pytest
+
+import dvi
+
+SCENES = pathlib.Path(__file__).resolve().parents[2] / "apps" / "scenes"
+METHOD = "galerkin:degree=4"
+
+
+@pytest.fixture
+def kepler():
+    return dvi.Scene(SCENES / "kepler.yaml", e=0.3)
+
+
+def gravity():
+    return dvi.System(2, potential=lambda t, q: -1 / np.hypot(*q),
+                      gradient=lambda t, q: q / np.hypot(*q)**3)
+
+
+def test_columns_have_names(kepler):
+    run = kepler.run(METHOD, h=0.05, t_end=1)
+    assert run.columns[:3] == ["t", "x", "y"]
+    assert np.shares_memory(run["x"], run.q)
+    assert run["energy"][0] == pytest.approx(-0.5, abs=1e-15)
+    with pytest.raises(KeyError, match="there is no column 'z'; there are t, x, y"):
+        run["z"]
+
+
+def test_a_run_has_the_bits_of_its_steps(kepler):
+    run = kepler.run(METHOD, h=0.0625, t_end=1, every=4)
+    integrator = dvi.Integrator(kepler, METHOD).start()
+    q = [integrator.q] + [integrator.q for _ in integrator.steps(0.0625, 16)]
+    assert np.array_equal(run.q, np.array(q)[::4])
+
+
+def test_rows_at_given_times(kepler):
+    times = np.linspace(0, 1, 7)
+    run = kepler.run(METHOD, h=0.0625, t_end=1, times=times)
+    assert np.array_equal(run.t, times)
+    assert np.allclose(run["energy"], -0.5, atol=1e-4)
+
+
+def test_arrays_outlive_their_run(kepler):
+    x = kepler.run(METHOD, h=0.05, t_end=1)["x"]
+    kept = x.copy()
+    for _ in range(4):
+        kepler.run(METHOD, h=0.05, t_end=1)
+    assert np.array_equal(x, kept)
+
+
+def test_callbacks_of_python(kepler):
+    own = gravity().run(METHOD, h=0.05, t_end=2, q=[0.7, 0], v=[0, np.sqrt(1.3 / 0.7)])
+    assert np.allclose(own.q, kepler.run(METHOD, h=0.05, t_end=2).q, atol=1e-12)
+
+
+def test_an_exception_of_a_callback_passes_through():
+    def broken(t, q):
+        raise ZeroDivisionError("in the callback")
+    with pytest.raises(ZeroDivisionError, match="in the callback"):
+        dvi.System(1, potential=broken).run("verlet", h=0.1, t_end=1, q=[0], v=[0])
+
+
+def test_a_lagrangian_of_sympy_is_that_of_the_scene():
+    sympy = pytest.importorskip("sympy")
+    t, m, M, l, g = sympy.symbols("t m M l g")
+    x, theta = sympy.Function("x")(t), sympy.Function("theta")(t)
+    bob = sympy.Matrix([x + l * sympy.sin(theta), -l * sympy.cos(theta)])
+    L = (M * x.diff(t)**2 + m * bob.diff(t).dot(bob.diff(t))) / 2 - m * g * bob[1]
+    system = dvi.System.of_lagrangian(L, [x, theta], m=0.2, M=1, l=0.5, g=9.81)
+    run = system.run("galerkin:degree=2", h=0.02, t_end=20, q=[0, 1], v=[0, 0])
+    assert run["x"][-1] == pytest.approx(0.0019303282895615365, abs=1e-14)
+    assert run["theta"][-1] == pytest.approx(0.95845943079021689, abs=1e-14)
+    with pytest.raises(TypeError, match="symbols without a number: M"):
+        dvi.System.of_lagrangian(L, [x, theta], m=0.2, l=0.5, g=9.81)
+
+
+def test_masses():
+    spring = dict(potential=lambda t, q: q @ q / 2, gradient=lambda t, q: q)
+    start = dict(h=0.1, t_end=1, q=[1, 2], v=[0, 1])
+    sparse = pytest.importorskip("scipy.sparse")
+    runs = [dvi.System(2, mass=mass, **spring).run(METHOD, **start)
+            for mass in (4.0, [4, 4], np.eye(2) * 4, sparse.eye(2) * 4)]
+    for run in runs[1:]:
+        assert np.allclose(run.q, runs[0].q, atol=1e-13)
+
+
+def test_addresses_of_c_callbacks():
+    import ctypes
+    kind = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_double, ctypes.POINTER(ctypes.c_double),
+                            ctypes.POINTER(ctypes.c_double), ctypes.c_void_p)
+
+    @kind
+    def value(t, q, V, user):
+        V[0] = q[0]**2 / 2
+        return 0
+
+    @kind
+    def gradient(t, q, V_q, user):
+        V_q[0] = q[0]
+        return 0
+    value_at, gradient_at = (ctypes.cast(f, ctypes.c_void_p).value for f in (value, gradient))
+    run = dvi.System(1, value_at, gradient_at).run(METHOD, h=0.1, t_end=1, q=[1], v=[0])
+    assert run["q1"][-1] == pytest.approx(np.cos(1), abs=1e-9)
+
+
+def test_ensembles_have_the_bits_of_single_runs(kepler):
+    v = np.array([[0.0] * 5, np.linspace(0.9, 1.1, 5)])
+    ensemble = dvi.Ensemble(kepler, METHOD, 5).start(np.tile([[1.0], [0.0]], 5), v=v)
+    t, q, p = ensemble.record(0.05, 20, every=5)
+    assert t.shape == (5,) and q.shape == (5, 2, 5)
+    single = dvi.Integrator(kepler, METHOD).start([1, 0], v=v[:, 3])
+    for _ in single.steps(0.05, 20):
+        pass
+    assert np.array_equal(single.q, ensemble.q[:, 3])
+    with pytest.raises(ValueError, match=r"\(2, 5\) is needed"):
+        ensemble.start(np.zeros((5, 2)), v=v)
+
+
+def test_a_pickled_integrator_goes_on_with_the_same_bits(kepler):
+    integrator = dvi.Integrator(kepler, METHOD).start()
+    for _ in integrator.steps(0.05, 7):
+        pass
+    copy = pickle.loads(pickle.dumps(integrator))
+    copy.step(0.05)
+    integrator.step(0.05)
+    assert np.array_equal(copy.q, integrator.q) and copy.t == integrator.t
+
+
+def test_events(tmp_path):
+    text = (SCENES / "kepler.yaml").read_text() + "events: {crossing: {zero: y, direction: rising}}\n"
+    scene = dvi.Scene.parse(text, e=0.3)
+    run = scene.run(METHOD, h=0.05, t_end=13)
+    assert [event.name for event in run.events] == ["crossing"] * len(run.events)
+    assert all(abs(event.q[1]) < 1e-10 for event in run.events)
+
+
+def test_errors_have_the_librarys_sentences(kepler):
+    with pytest.raises(dvi.BadArgument, match="unknown method .galerkn.; there are galerkin, verlet"):
+        kepler.run("galerkn", h=0.05, t_end=1)
+    with pytest.raises(dvi.BadArgument, match="leads away from t_end"):
+        kepler.run(METHOD, h=-0.05, t_end=1)
+    with pytest.raises(dvi.BadArgument, match="scene.yaml:2:"):
+        dvi.Scene.parse("coordinates: {x: scalar}\nlagrangian: y\nstep: 1\nuntil: 1\n"
+                        "initial: {x: 0}\n")
+    with pytest.raises(dvi.Error) as failed:
+        kepler.run("midpoint", h=2, t_end=100)
+    assert failed.value.status in ("DVI_STEP_TOO_LARGE", "DVI_NOT_CONVERGED")
+    assert len(failed.value.run) >= 1
+
+
+def test_measured_orders(kepler):
+    table = dvi.order(kepler, "galerkin:degree=2", h=0.1, t_end=2, levels=4)
+    assert np.allclose(table["order"][1:], 4, atol=0.1)
