@@ -9,7 +9,8 @@
 set -eu
 
 packages="gcc g++ libc6-dev make cmake pkg-config libsundials-dev libsuitesparse-dev liblapack-dev
-  libarpack2-dev libyaml-dev check gnuplot-nox"
+  libarpack2-dev libyaml-dev check gnuplot-nox
+  python3-dev python3-cffi python3-numpy python3-setuptools python3-pytest"
 lint_packages="clang clang-tidy clang-format cppcheck doxygen valgrind libc6-dbg libclang-rt-dev"
 
 usage() {
