@@ -298,6 +298,9 @@ static dvi_status advance_state(dvi_integrator *I, double h)
   DVI_TRY(dvi__integrator_find_side(I));
   DVI_TRY(dvi__control_begin(I, h, &length));
   const double density = I->next.density;
+  /* a method with a pass takes no forces, which supply something */
+  if (method->pass != NULL && I->balances > 0)
+    memcpy(I->next.supplied, I->now.supplied, 2 * I->balances * sizeof(double));
   if (method->pass != NULL &&
       method->pass(&I->stepper, &I->now, I->memory_before, &I->next, &length, 1) &&
       isfinite(I->next.t))

@@ -15,7 +15,9 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "method/split/friction.h"
+#include "method/split/impulse.h"
 #include "method/split/rattle.h"
+#include "method/split/verlet_alone.h"
 #include "method/split/verlet_lanes.h"
 #include "num/compensated.h"
 
@@ -167,14 +169,6 @@ static void verlet_drift(const dvi__stepper *self, dvi__state *state, double h)
   dvi__add_compensated(&state->t, &state->t_compensation, h);
 }
 
-static dvi__phase verlet_phase_of(const dvi__state *state)
-{
-  return (dvi__phase){.q = state->q,
-                      .p = state->p,
-                      .q_compensation = state->q_compensation,
-                      .p_compensation = state->p_compensation};
-}
-
 /* Kick and drift each coordinate alone. */
 static void verlet_kick_drift(const dvi__stepper *self, dvi__state *state, double h)
 {
@@ -187,8 +181,8 @@ static void verlet_kick_drift(const dvi__stepper *self, dvi__state *state, doubl
                                                  .scalar = own->scalar,
                                                  .mass = self->system->mass_diagonal,
                                                  .force = self->memory,
-                                                 .from = verlet_phase_of(state),
-                                                 .to = verlet_phase_of(state)});
+                                                 .from = dvi__impulse_phase(state),
+                                                 .to = dvi__impulse_phase(state)});
   dvi__add_compensated(&state->t, &state->t_compensation, h);
 }
 
@@ -267,14 +261,28 @@ static dvi_status verlet_step(dvi__stepper *self, dvi__state *state, double h)
   return DVI_OK;
 }
 
-/* ---- temporal blocking ---- */
+/* ---- several steps at once ---- */
 
-static int verlet_pass(dvi__stepper *self, const dvi__state *now, const double *before,
-                       dvi__state *next, const double *h, int count)
+/* Take steps of few coordinates, or of those that temporal blocking does not take. */
+static int verlet_pass_alone(dvi__stepper *self, const dvi__state *now, const double *before,
+                             dvi__state *next, const double *h, int count)
+{
+  const verlet *own = self->own;
+  const dvi__verlet_alone alone = {self->system, own->evaluator, own->by, own->scalar};
+  const double *gradient = before;
+  if (before[self->system->n] == 0) {
+    if (verlet_gradient(self, now) != DVI_OK) return 0;
+    gradient = self->memory;
+  }
+  *verlet_gradient_known(self, self->memory) = 1;
+  return dvi__verlet_alone_steps(&alone, now, gradient, next, self->memory, h, count);
+}
+
+static int verlet_pass_blocked(dvi__stepper *self, const dvi__state *now, const double *before,
+                               dvi__state *next, const double *h, int count)
 {
   const verlet *own = self->own;
   double t[DVI__BLOCKING_SUBSTEPS];
-  if (own->blocking == NULL || count > DVI__BLOCKING_SUBSTEPS) return 0;
   const int known = before[self->system->n] != 0;
   next->t = now->t;
   next->t_compensation = now->t_compensation;
@@ -288,10 +296,25 @@ static int verlet_pass(dvi__stepper *self, const dvi__state *now, const double *
                                                                 .h = h,
                                                                 .t0 = now->t,
                                                                 .t = t,
-                                                                .from = verlet_phase_of(now),
-                                                                .to = verlet_phase_of(next),
+                                                                .from = dvi__impulse_phase(now),
+                                                                .to = dvi__impulse_phase(next),
                                                                 .gradient = known ? before : NULL,
                                                                 .gradient_to = self->memory});
+}
+
+/* The step names a failure, and has its evaluations counted. */
+static int verlet_pass(dvi__stepper *self, const dvi__state *now, const double *before,
+                       dvi__state *next, const double *h, int count)
+{
+  const verlet *own = self->own;
+  const long gradients = self->counters->gradients;
+  int done = 0;
+  if (own->blocking != NULL && count <= DVI__BLOCKING_SUBSTEPS)
+    done = verlet_pass_blocked(self, now, before, next, h, count);
+  else if (own->blocking == NULL && own->change == NULL && self->damping == NULL)
+    done = verlet_pass_alone(self, now, before, next, h, count);
+  if (!done) self->counters->gradients = gradients;
+  return done;
 }
 
 static double verlet_traffic(const dvi__stepper *self, int count)

@@ -8,8 +8,8 @@ WIDE static void add_gradient(size_t length, const double *restrict term, double
   for (size_t i = 0; i < length; i++) sum[i] += term[i];
 }
 
-/* What is not the gradient of one potential by its batch callback is compiled apart, so that this
- * costs hardly more than the callback's own work. */
+/* What is not the gradient of one potential by one call is compiled apart, so that this costs
+ * hardly more than the callback's own work. */
 
 __attribute__((noinline)) static dvi_status refuse(const dvi__potential_term *term, int returned)
 {
@@ -27,13 +27,19 @@ __attribute__((noinline)) static dvi_status by_point(dvi__evaluator *e,
   return status;
 }
 
+/* A batch of one point is the point itself. */
 static inline dvi_status evaluate_term(dvi__evaluator *e, const dvi__potential_term *term,
                                        int count, const double *t, const double *q,
                                        double *gradient)
 {
   const dvi_potential *c = &term->callbacks;
-  if (c->gradient_batch == NULL) return by_point(e, term, count, t, q, gradient);
-  const int returned = c->gradient_batch(count, t, q, gradient, c->user);
+  int returned;
+  if (c->gradient_batch != NULL)
+    returned = c->gradient_batch(count, t, q, gradient, c->user);
+  else if (c->gradient != NULL && count == 1)
+    returned = c->gradient(*t, q, gradient, c->user);
+  else
+    return by_point(e, term, count, t, q, gradient);
   return returned == 0 ? DVI_OK : refuse(term, returned);
 }
 
