@@ -13,8 +13,8 @@
 
 /* The memory starts with the length of the last step (0 before the first step). The carried numbers
  * of the method follow. Behind them is what the guess continues, as many numbers as unknowns.
- * Before the first step the velocity of the start stands there. The last part is that of the
- * predictor. */
+ * Before the first step the velocity of the start stands there. The predictor's numbers and
+ * DVI__LADDER numbers come last. */
 enum { DVI__LENGTH, DVI__CARRIED };
 
 typedef struct dvi__step_kind {
@@ -32,6 +32,12 @@ typedef struct dvi__step_kind {
   /* The time that passes in the step with the solution x, for kinds that accept time-transformed
    * systems. NULL selects h. */
   dvi_status (*duration)(void *of, const double *x, double *duration);
+  /* Fixed point iteration, as the members of dvi__equations with these names (nonlinear.h), for the
+   * steps that `has_iteration` accepts. NULL if there is none. */
+  int (*has_iteration)(const void *of);
+  void (*fixed_point_begin)(void *of, const double *x);
+  dvi_status (*fixed_point_iterate)(void *of, double *change, double *largest);
+  void (*fixed_point_end)(void *of, double *x);
   /* Newton's method factors each Jacobian, because forces cost more than factors, and the step
    * corrects increments from the last point */
   int renewed;
@@ -58,6 +64,9 @@ dvi_status dvi__one_step_create(dvi__stepper *self, size_t size, const dvi__step
 /* Solve a step of length h from the state for x. The first guess is a straight line along the
  * velocity at the start. Later guesses continue the remembered numbers. */
 dvi_status dvi__one_step_solve(dvi__stepper *self, const dvi__state *state, double h);
+
+/* Tell whether the last solution is that of fixed point iteration. */
+int dvi__one_step_is_iterated(const dvi__stepper *self);
 
 /* The momentum [n] from which a part of the step starts. Where a method leaves p = alpha(q), the
  * distance from alpha(q) belongs to the length of the steps, and is scaled with the part. Without
