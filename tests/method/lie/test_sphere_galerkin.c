@@ -141,8 +141,28 @@ START_TEST(chains_are_solved_direction_by_direction)
 }
 END_TEST
 
+/* The mass couples two directions. Their 32 unknowns are one block, and no sparse Jacobian is
+ * factored. */
+START_TEST(coupled_directions_are_one_block)
+{
+  body model;
+  dvi_counters before, counters;
+  make_body(DIRECTIONS, &model);
+  dvi_integrator *made = body_integrator(&model, "sphere-galerkin:degree=8");
+  advance(made, 0.01, 1);
+  dvi_integrator_counters(made, &before);
+  advance(made, 0.01, 50);
+  dvi_integrator_counters(made, &counters);
+  ck_assert_int_eq(counters.simplified, before.simplified + 50);
+  ck_assert_int_eq(counters.factorizations, before.factorizations);
+  dvi_integrator_destroy(&made);
+  destroy_body(&model);
+}
+END_TEST
+
 SUITE(sphere_galerkin)
 {
+  tcase_add_test(tests, coupled_directions_are_one_block);
   tcase_add_test(tests, a_free_direction_keeps_its_momentum);
   tcase_add_loop_test(tests, it_takes_the_steps_of_lie_galerkin, 0, 2);
   tcase_add_test(tests, directions_stay_directions);
