@@ -10,9 +10,10 @@
  *
  *  Members side by side are the lanes of vectors, and one batch callback evaluates all their
  *  points. This needs a constant mass, scalar or diagonal, and potentials that give their
- *  gradients. It serves verlet, fixed-point iteration of the implicit methods, and compositions of
- *  both. Everything else goes member by member, as an integrator does. An ensemble serves one
- *  caller at a time. */
+ *  gradients. It serves verlet, fixed-point iteration of the implicit methods, lie-verlet for
+ *  bodies, directions and angles that no mass couples, without forces and constraints, and
+ *  compositions of these. Everything else goes member by member, as an integrator does. An ensemble
+ *  serves one caller at a time. */
 typedef struct dvi_ensemble dvi_ensemble;
 
 /** Options of an ensemble. Zero means default. */
