@@ -132,6 +132,7 @@ static dvi_status element_decouple(dvi__stepper *self, dvi__element *own)
 static dvi_status element_create_solver(dvi__stepper *self, dvi__element *own)
 {
   const int has_fixed_point = dvi__action_has_fixed_point(own->action);
+  self->marches = dvi__element_marches(self);
   dvi__equations equations = {
       .unknowns = dvi__action_unknowns(own->action),
       .group = dvi__action_space_of(own->action).degree,
@@ -453,7 +454,7 @@ static void add_increments(int n, const dvi__element *own, dvi__state *state)
   }
 }
 
-static dvi_status element_advance(dvi__stepper *self, dvi__state *state, double h)
+dvi_status dvi__element_advance(dvi__stepper *self, dvi__state *state, double h)
 {
   const dvi__element *own = self->own;
   element_keep_path(self, state->p);
@@ -554,7 +555,7 @@ dvi_status dvi__element_step(dvi__stepper *self, dvi__state *state, double h)
   dvi__action_forces(own->action, self->memory + dvi__element_forces(self));
   if (own->choice == DVI__SOLVER_CERTIFIED) DVI_TRY(element_certify(self, &at, own->Y, &report));
   DVI_TRY(element_supply(self, state));
-  return element_advance(self, state, h);
+  return dvi__element_advance(self, state, h);
 }
 
 void dvi__element_path(const dvi__stepper *self, const double *q0, double h, double tau, double *q,

@@ -78,6 +78,13 @@ typedef struct dvi__element {
 /* Put the equations at a step of length h from there. */
 void dvi__element_put(dvi__element *own, const dvi__element_place *at, double h);
 
+/* Tell whether steps by fixed-point iteration can follow one after the other: nothing but the ends
+ * of each is asked, and each starts from the forces of the one before. */
+int dvi__element_marches(const dvi__stepper *self);
+
+/* Advance the state by the increments of a solved step, and keep its path. */
+dvi_status dvi__element_advance(dvi__stepper *self, dvi__state *state, double h);
+
 /* Tell whether the rungs follow one after the other. */
 int dvi__element_is_ladder(const dvi__element *own);
 

@@ -1,6 +1,7 @@
-/* The loops over coordinates of lanes.c, for vectors of WIDTH numbers, after lanes_width.h. Each
+/* The loops over coordinates of lanes.c, for vectors of WIDTH numbers, after vector_width.h. Each
  * goes on from coordinate i as far as whole vectors reach and returns where it stopped. The rest is
  * for width 1. Every lane does what core and num do for one number, in the same order. */
+#include "num/simd/lanes_width.h"
 
 /* Add as dvi__add_compensated does. */
 INLINE void NAME(add)(NAME(vector) * sum, NAME(vector) * compensation, const NAME(vector) * term)

@@ -19,15 +19,7 @@ int dvi__lanes_for(int stages)
 
 enum { FETCH_AHEAD = 1536 }; /* in bytes; half of it is nearly as good */
 
-/* A fused product gives the rounding error of a product. Where the processor has none, the library
- * function gives the same bits. */
-INLINE void split_one(const dvi__fixed_point *s, size_t i)
-{
-  s->start[i] = s->factor[i] * s->p0[i];
-  s->low[i] = __builtin_fma(s->factor[i], s->p0[i], -s->start[i]);
-}
-
-#define LOOPS "num/simd/lanes_width.h"
+#define LOOPS "num/simd/kick_drift_width.h"
 #include "num/simd/each_width.h"
 
 /* Rows of eight lanes are the most common ones, and their few terms are worth knowing at compile
@@ -94,7 +86,7 @@ INLINE void weigh(int n, int stages, const double *weight, double *x)
 
 INLINE void split(const dvi__fixed_point *s)
 {
-  for (size_t i = 0; i < (size_t)s->n; i++) split_one(s, i);
+  for (size_t i = 0; i < (size_t)s->n; i++) split_one1(s, i);
 }
 
 /* The error of p0 + half is Knuth's (1969), sec. 4.2.2. */

@@ -447,3 +447,50 @@ void dvi__action_forces(const dvi__action *a, double *g)
     forces_of_rows(a, g);
   if (a->preconditioner != NULL) dvi__preconditioner_other_forces(a, g);
 }
+
+/* ---- steps one after the other ---- */
+
+int dvi__action_has_plain_steps(const dvi__action *a)
+{
+  void *user;
+  return a->transformed == NULL && a->preconditioner == NULL && dvi__action_has_fixed_point(a) &&
+         a->fixed_point.stages == a->r && dvi__lone_gradient(a->evaluator, &user) != NULL;
+}
+
+void dvi__action_begin_steps(dvi__action *a, double h, const double *q0, const double *p0,
+                             double *dq, double *dq_low, double *dp, dvi__plain_steps *steps)
+{
+  dvi__lanes_solving *solving = &steps->solving;
+  *steps = (dvi__plain_steps){.action = a};
+  solving->evaluate = dvi__lone_gradient(a->evaluator, &solving->of);
+  dvi__action_place(a, a->t0, h, q0, p0);
+  dvi__action_set_step(a);
+  solving->iteration = place_iteration(a);
+  solving->t = a->t;
+  steps->ends = (dvi__ends){.n = a->n,
+                            .stages = a->r,
+                            .g = a->L_q,
+                            .slant = a->fixed_point.slant,
+                            .factor = a->fixed_point.factor,
+                            .p0 = p0,
+                            .moved = dq,
+                            .low = dq_low,
+                            .sum = dp};
+  a->iterated = 1;
+}
+
+int dvi__action_solve_step(dvi__plain_steps *steps, double t, double ratio, double *g)
+{
+  dvi__action *a = steps->action;
+  const double *shift = steps->shift;
+  if (ratio != 1 || shift == NULL) shift = dvi__action_fixed_point_shift(a, ratio);
+  if (ratio == 1) steps->shift = shift;
+  a->t0 = t;
+  for (int j = 0; j < a->r; j++) a->t[j] = t + a->node[j] * a->h;
+  dvi__lanes_begin_from(steps->solving.iteration, shift, g);
+  const int iterations = dvi__lanes_solve(&steps->solving);
+  if (iterations <= 0) return iterations;
+  dvi__lanes_ends(&steps->ends);
+  memcpy(g, a->L_q, (size_t)a->n * (size_t)a->r * sizeof *g);
+  return iterations;
+}

@@ -65,3 +65,11 @@ dvi_status dvi__potentials_gradient_untested(dvi__evaluator *e, int count, const
   if (s->potential_count > 1) return sum_terms(e, count, t, q, V_q);
   return evaluate_term(e, s->potentials, count, t, q, V_q);
 }
+
+dvi__gradient_callback *dvi__lone_gradient(const dvi__evaluator *e, void **user)
+{
+  const dvi_system *s = e->system;
+  if (s->potential_count != 1 || s->force_count > 0) return NULL;
+  *user = s->potentials[0].callbacks.user;
+  return s->potentials[0].callbacks.gradient_batch;
+}

@@ -8,4 +8,11 @@
 dvi_status dvi__potentials_gradient_untested(dvi__evaluator *e, int count, const double *t,
                                              const double *q, double *V_q);
 
+typedef int dvi__gradient_callback(int count, const double *t, const double *q, double *V_q,
+                                   void *user);
+
+/* Give the callback for batches of the one potential that makes all of V_q, and its user pointer.
+ * NULL if there is none such. Who calls it counts the gradients. */
+dvi__gradient_callback *dvi__lone_gradient(const dvi__evaluator *e, void **user);
+
 #endif
