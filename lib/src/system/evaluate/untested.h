@@ -8,4 +8,9 @@
 dvi_status dvi__potentials_gradient_untested(dvi__evaluator *e, int count, const double *t,
                                              const double *q, double *V_q);
 
+/* Compute the sum of the gradients of all potentials that are declared fast (1), or of all others
+ * (0), of which there are some, without such a look. Fast ones count as gradients. */
+dvi_status dvi__some_gradients_untested(dvi__evaluator *e, int fast, int count, const double *t,
+                                        const double *q, double *V_q);
+
 #endif
