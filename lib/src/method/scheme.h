@@ -9,9 +9,11 @@
 enum { DVI__SUBSTEPS_MOST = 17 };
 
 /* The weights are the first half of the parts and the middle one. The others follow by symmetry.
- * `lengths` counts the distinct parts. */
+ * `lengths` counts the distinct parts. Steps of Verlet's method on q'' = -omega^2 q are stable for
+ * h omega up to `stable`, rounded down to a thousandth. */
 typedef struct dvi__scheme {
   int order, substeps, lengths;
+  double stable;
   double weight[(DVI__SUBSTEPS_MOST + 1) / 2];
 } dvi__scheme;
 
