@@ -114,6 +114,14 @@ static int keeps_factor(const dvi__solver *s, const dvi__history *history, const
   return part <= now->unseen;
 }
 
+/* Tell whether the test at the floor of the rows may end the iteration: corrections do not shrink,
+ * or the first one leaves a rounding, which is its square. */
+static int may_be_at_floor(const dvi__history *history, double correction, double whole)
+{
+  return history->before > 0 ? correction >= roundoff.stagnant * history->before
+                             : correction <= 1e-6 * whole;
+}
+
 dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__solve_report *report)
 {
   const dvi__criteria criteria = newton_criteria(s);
@@ -145,7 +153,7 @@ dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__so
     report->idle = is_small ? report->idle + is_idle : 0;
     settled = is_small ? settled + (is_idle && !kept) : 0;
     if (progress != DVI__CONVERGED &&
-        (settled > 1 || report->correction >= criteria.stagnant * history.before))
+        (settled > 1 || may_be_at_floor(&history, report->correction, whole)))
       DVI_TRY(dvi__solver_at_floor(s, x, settled > 1, &at_floor));
     if (at_floor) return DVI_OK;
     if (converged && small_ones_settled(part, &last_relative)) return DVI_OK;
