@@ -25,6 +25,10 @@ static const dvi__criteria roundoff = {.stagnant = 0.5, .noise = 1e4 * DBL_EPSIL
  * Jacobians give no squares, and settle nothing. */
 static const double small_correction = 1e-4, idle_ratio = 0.25;
 
+/* A first correction of this part of the unknowns may leave a rounding, as its square does in most
+ * rows. */
+static const double small_first = 1e-6;
+
 /* Corrections of noisy residuals may be noise from larger ones on. */
 static dvi__criteria newton_criteria(const dvi__solver *s)
 {
@@ -114,12 +118,12 @@ static int keeps_factor(const dvi__solver *s, const dvi__history *history, const
   return part <= now->unseen;
 }
 
-/* Tell whether the test at the floor of the rows may end the iteration: corrections do not shrink,
- * or the first one leaves a rounding, which is its square. */
+/* Tell whether rows may be at their floor, because corrections do not shrink, or the first one is
+ * small. */
 static int may_be_at_floor(const dvi__history *history, double correction, double whole)
 {
   return history->before > 0 ? correction >= roundoff.stagnant * history->before
-                             : correction <= 1e-6 * whole;
+                             : correction <= small_first * whole;
 }
 
 dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__solve_report *report)

@@ -96,8 +96,8 @@ static void exchange_rows(const dvi__small_lu *lu, int k, int with)
   }
 }
 
-/* Make column k one of L and one of U, and subtract it from the columns behind it up to `end`. Gives
- * the pivot. */
+/* Make column k one of L and one of U, and subtract it from those behind it, up to `end`. Gives the
+ * pivot. */
 INLINE double factor_column(const dvi__small_lu *lu, int k, int end)
 {
   const int n = lu->n, stride = lu->stride, first = k / BLOCK * BLOCK;
