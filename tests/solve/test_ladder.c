@@ -213,6 +213,25 @@ START_TEST(a_row_that_is_rounding_is_solved)
 }
 END_TEST
 
+/* The rows are looked at once more only where the first correction may have left a rounding. */
+START_TEST(a_small_first_correction_may_be_the_last)
+{
+  single_equation equation = {parabola, parabola_slope, 0.5, -HUGE_VAL, 0};
+  solver_bench bench;
+  double x = 1 + 1e-9;
+  create_sum_solver(&equation, &bench);
+  ck_assert_int_eq(solve_by_rung(&bench, DVI__NEWTON, &x), DVI_OK);
+  ck_assert_int_eq(bench.report.iterations, 1);
+  ck_assert_int_eq(equation.residuals, 2);
+  x = 1.5;
+  equation.residuals = 0;
+  ck_assert_int_eq(solve_by_rung(&bench, DVI__NEWTON, &x), DVI_OK);
+  ck_assert_double_eq_tol(x, 1, 2 * DBL_EPSILON);
+  ck_assert_int_eq(equation.residuals, bench.report.iterations);
+  destroy_solver_bench(&bench, NULL);
+}
+END_TEST
+
 /* ---- complex Jacobians ---- */
 
 /* Both rows are (x + y)^2 - 4, whose Jacobian is singular everywhere. */
@@ -360,6 +379,7 @@ SUITE(ladder)
   tcase_add_loop_test(tests, a_singular_jacobian_is_a_step_s_failure, 0, 2);
   tcase_add_loop_test(tests, a_start_on_a_critical_point_is_a_failure, 0, 2);
   tcase_add_loop_test(tests, a_row_that_is_rounding_is_solved, 0, 2);
+  tcase_add_test(tests, a_small_first_correction_may_be_the_last);
   tcase_add_loop_test(tests, shifts_of_singular_jacobians_give_steps_of_least_norm, 0, 2);
   tcase_add_loop_test(tests, own_variables_are_certified_by_one_residual, 0, 7);
 }

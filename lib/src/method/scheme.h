@@ -9,8 +9,8 @@
 enum { DVI__SUBSTEPS_MOST = 17 };
 
 /* The weights are the first half of the parts and the middle one. The others follow by symmetry.
- * `lengths` counts the distinct parts. `stable` is the largest z, to a thousandth, up to which all
- * steps of length z of Verlet's method for q'' = -q are stable. */
+ * `lengths` counts the distinct parts. Steps of Verlet's method on q'' = -omega^2 q are stable for
+ * h omega up to `stable`, rounded down to a thousandth. */
 typedef struct dvi__scheme {
   int order, substeps, lengths;
   double stable;

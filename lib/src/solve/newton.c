@@ -25,6 +25,10 @@ static const dvi__criteria roundoff = {.stagnant = 0.5, .noise = 1e4 * DBL_EPSIL
  * Jacobians give no squares, and settle nothing. */
 static const double small_correction = 1e-4, idle_ratio = 0.25;
 
+/* A first correction of this part of the unknowns may leave a rounding, as its square does in most
+ * rows. */
+static const double small_first = 1e-6;
+
 /* Corrections of noisy residuals may be noise from larger ones on. */
 static dvi__criteria newton_criteria(const dvi__solver *s)
 {
@@ -114,6 +118,14 @@ static int keeps_factor(const dvi__solver *s, const dvi__history *history, const
   return part <= now->unseen;
 }
 
+/* Tell whether rows may be at their floor, because corrections do not shrink, or the first one is
+ * small. */
+static int may_be_at_floor(const dvi__history *history, double correction, double whole)
+{
+  return history->before > 0 ? correction >= roundoff.stagnant * history->before
+                             : correction <= small_first * whole;
+}
+
 dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__solve_report *report)
 {
   const dvi__criteria criteria = newton_criteria(s);
@@ -145,7 +157,7 @@ dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__so
     report->idle = is_small ? report->idle + is_idle : 0;
     settled = is_small ? settled + (is_idle && !kept) : 0;
     if (progress != DVI__CONVERGED &&
-        (settled > 1 || report->correction >= criteria.stagnant * history.before))
+        (settled > 1 || may_be_at_floor(&history, report->correction, whole)))
       DVI_TRY(dvi__solver_at_floor(s, x, settled > 1, &at_floor));
     if (at_floor) return DVI_OK;
     if (converged && small_ones_settled(part, &last_relative)) return DVI_OK;

@@ -40,14 +40,14 @@ INLINE void NAME(add_doubts)(const NAME(mask) * products, int64_t *doubt)
 }
 
 INLINE size_t NAME(kick_drift)(const dvi__kick_drift *whole, size_t i, const int kicks,
-                               const dvi__division by, int64_t *doubt)
+                               const dvi__division by, const int far, int64_t *doubt)
 {
   /* a copy, because the compiler cannot know that no store changes it */
   const dvi__kick_drift l = *whole;
   NAME(mask) doubts = {0};
   for (; i + WIDTH <= l.count; i += WIDTH) {
     NAME(vector) force, p, p_compensation, q, q_compensation, v;
-    if (l.far != DVI__NEAR) NAME(fetch)(&l, i);
+    if (far) NAME(fetch)(&l, i);
     NAME(load)(l.force + i, &force);
     NAME(load)(l.from.p + i, &p);
     NAME(load)(l.from.p_compensation + i, &p_compensation);

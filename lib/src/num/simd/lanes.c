@@ -137,24 +137,26 @@ INLINE double largest(size_t count, const double *x)
 }
 
 INLINE int kick_drift_with_kicks(int widest, const dvi__kick_drift *l, const int kicks,
-                                 const dvi__division by)
+                                 const dvi__division by, const int far)
 {
   int64_t doubt = 0;
   size_t i = 0;
   if (widest == 8)
-    i = kick_drift8(l, i, kicks, by, &doubt);
+    i = kick_drift8(l, i, kicks, by, far, &doubt);
   else if (widest == 4)
-    i = kick_drift4(l, i, kicks, by, &doubt);
+    i = kick_drift4(l, i, kicks, by, far, &doubt);
   else
-    i = kick_drift2(l, i, kicks, by, &doubt);
-  (void)kick_drift1(l, i, kicks, by, &doubt);
+    i = kick_drift2(l, i, kicks, by, far, &doubt);
+  (void)kick_drift1(l, i, kicks, by, far, &doubt);
   return (doubt & INT64_MAX) == 0;
 }
 
+/* Only the first operation on a step's state, of one kick, finds it far away. */
 INLINE int kick_drift_with_division(int widest, const dvi__kick_drift *l, const dvi__division by)
 {
-  return l->kicks == 2 ? kick_drift_with_kicks(widest, l, 2, by)
-                       : kick_drift_with_kicks(widest, l, 1, by);
+  return l->kicks == 2         ? kick_drift_with_kicks(widest, l, 2, by, 0)
+         : l->far == DVI__NEAR ? kick_drift_with_kicks(widest, l, 1, by, 0)
+                               : kick_drift_with_kicks(widest, l, 1, by, 1);
 }
 
 INLINE int kick_drift(int widest, const dvi__kick_drift *l)
