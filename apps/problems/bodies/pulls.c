@@ -3,12 +3,16 @@
 #include <math.h>
 
 /* Compute the vector r of a pull at point k. */
-static void pull_vector(const pull *of, int count, int k, const double *q, double *r)
+PROBLEM_INLINE void pull_vector(const pull *of, const int count, int k, const double *q, double *r)
 {
-  r[0] = r[1] = r[2] = 0.0;
-  for (int a = 0; a < of->arms; a++)
-    for (int i = 0; i < 3; i++)
-      r[i] += of->arm[a].factor * q[(of->arm[a].first + i * of->arm[a].stride) * count + k];
+  double sum[3] = {0.0};
+  for (int a = 0; a < of->arms; a++) {
+    const arm *one = &of->arm[a];
+    const ptrdiff_t first = (ptrdiff_t)one->first * count + k,
+                    stride = (ptrdiff_t)one->stride * count;
+    for (int i = 0; i < 3; i++) sum[i] += one->factor * q[first + i * stride];
+  }
+  memcpy(r, sum, sizeof sum);
 }
 
 static int pulls_value(int count, const double *t, const double *q, double *V, void *user)
@@ -26,24 +30,37 @@ static int pulls_value(int count, const double *t, const double *q, double *V, v
   return 0;
 }
 
-static void pull_add_gradient(const pull *of, int count, int k, const double *q, double *V_q)
+PROBLEM_INLINE void pull_add_gradient(const pull *of, const int count, int k, const double *q,
+                                      double *V_q)
 {
   double r[3];
   pull_vector(of, count, k, q, r);
   const double r2 = r[0] * r[0] + r[1] * r[1] + r[2] * r[2], force = of->strength / (r2 * sqrt(r2));
-  for (int a = 0; a < of->arms; a++)
-    for (int i = 0; i < 3; i++)
-      V_q[(of->arm[a].first + i * of->arm[a].stride) * count + k] += of->arm[a].factor * force *
-                                                                     r[i];
+  for (int a = 0; a < of->arms; a++) {
+    const arm *one = &of->arm[a];
+    const ptrdiff_t first = (ptrdiff_t)one->first * count + k,
+                    stride = (ptrdiff_t)one->stride * count;
+    const double along = one->factor * force;
+    for (int i = 0; i < 3; i++) V_q[first + i * stride] += along * r[i];
+  }
 }
 
-static int pulls_gradient(int count, const double *t, const double *q, double *V_q, void *user)
+PROBLEM_INLINE void pulls_gradient_at(const pulls *all, const int count, const double *q,
+                                      double *V_q)
 {
-  const pulls *all = user;
-  (void)t;
   memset(V_q, 0, (size_t)all->nq * (size_t)count * sizeof *V_q);
   for (int k = 0; k < count; k++)
     for (int j = 0; j < all->count; j++) pull_add_gradient(&all->pull[j], count, k, q, V_q);
+}
+
+/* One point needs no products of places. */
+static int pulls_gradient(int count, const double *t, const double *q, double *V_q, void *user)
+{
+  (void)t;
+  if (count == 1)
+    pulls_gradient_at(user, 1, q, V_q);
+  else
+    pulls_gradient_at(user, count, q, V_q);
   return 0;
 }
 

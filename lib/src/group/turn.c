@@ -61,36 +61,49 @@ FUSED_INLINE void cross_twofold(const dvi__twofold a[3], const dvi__twofold b[3]
   }
 }
 
-/* Turn a row by x^T F = x^T + s z^T w^,  z^T = x^T (I + w^). */
-FUSED_INLINE void turn_row(const dvi__turn *turn, dvi__twofold x[3])
+/* Compute a x b for b without tails. */
+FUSED_INLINE void cross_by(const dvi__twofold a[3], const double b[3], dvi__twofold product[3])
 {
-  static const double none[3] = {0};
-  dvi__twofold w[3], z[3], moved[3];
-  dvi__twofold_get(3, turn->w, none, w);
-  cross_twofold(x, w, z);
+  for (int i = 0; i < 3; i++) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    const dvi__twofold ahead = dvi__exact_product(a[j].head, b[k]),
+                       back = dvi__exact_product(-a[k].head, b[j]);
+    const double tails = a[j].tail * b[k] - a[k].tail * b[j];
+    product[i] = dvi__twofold_sum(ahead, back);
+    product[i].tail += tails;
+  }
+}
+
+/* Turn a row by x^T F = x^T + s z^T w^,  z^T = x^T (I + w^). */
+FUSED_INLINE void turn_row(const dvi__turn *turn, double *head, double *low)
+{
+  dvi__twofold x[3], z[3], moved[3];
+  dvi__twofold_get(3, head, low, x);
+  cross_by(x, turn->w, z);
   for (int i = 0; i < 3; i++) z[i] = dvi__twofold_sum(x[i], z[i]);
-  cross_twofold(z, w, moved);
+  cross_by(z, turn->w, moved);
   for (int i = 0; i < 3; i++) {
     dvi__twofold change = dvi__exact_product(turn->s, moved[i].head);
     change.tail += turn->s * moved[i].tail + turn->s_low * moved[i].head;
     x[i] = dvi__twofold_sum(x[i], change);
   }
+  dvi__twofold_put(3, x, head, low);
 }
 
 FUSED static void turn_rows(const dvi__turn *turn, int count, double *x, double *compensation)
 {
-  for (int at = 0; at < count; at += 3) {
-    double head[3] = {0}, low[3] = {0};
-    const size_t bytes = (size_t)(count - at < 3 ? count - at : 3) * sizeof(double);
-    dvi__twofold row[3];
-    memcpy(head, x + at, bytes);
-    memcpy(low, compensation + at, bytes);
-    dvi__twofold_get(3, head, low, row);
-    turn_row(turn, row);
-    dvi__twofold_put(3, row, head, low);
-    memcpy(x + at, head, bytes);
-    memcpy(compensation + at, low, bytes);
-  }
+  const dvi__turn by =
+      *turn; /* a copy, because the compiler cannot know that no store changes it */
+  int at = 0;
+  for (; at + 3 <= count; at += 3) turn_row(&by, x + at, compensation + at);
+  if (at == count) return;
+  double head[3] = {0}, low[3] = {0};
+  const size_t bytes = (size_t)(count - at) * sizeof(double);
+  memcpy(head, x + at, bytes);
+  memcpy(low, compensation + at, bytes);
+  turn_row(&by, head, low);
+  memcpy(x + at, head, bytes);
+  memcpy(compensation + at, low, bytes);
 }
 
 /* Compute a.b + c to relative rounding accuracy even where almost everything cancels. */
