@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "entry.h"
+
 enum { POINTS = 8 }; /* points of a batch that are evaluated side by side */
 
 /* Some points of a batch of `count`, from q on. */
@@ -10,22 +12,22 @@ typedef struct batch {
   const double *q;
 } batch;
 
-static batch pulls_batch(int count, int first, const double *q)
+PROBLEM_INLINE batch pulls_batch(int count, int first, const double *q)
 {
   return (batch){count, count - first < POINTS ? count - first : POINTS, q + first};
 }
 
-static ptrdiff_t arm_row(const arm *of, int i, int count)
+PROBLEM_INLINE ptrdiff_t arm_row(const arm *of, int i, int count)
 {
   return (ptrdiff_t)(of->first + i * of->stride) * count;
 }
 
 /* Compute the vectors r of a pull, and |r|^2. */
-static void pull_vectors(const pull *of, const batch *at, double r[3][POINTS], double *r2)
+PROBLEM_INLINE void pull_vectors(const pull *of, const batch *at, double r[3][POINTS], double *r2)
 {
-  memset(r2, 0, POINTS * sizeof *r2);
+  for (int k = 0; k < at->some; k++) r2[k] = 0;
   for (int i = 0; i < 3; i++) {
-    memset(r[i], 0, sizeof r[i]);
+    for (int k = 0; k < at->some; k++) r[i][k] = 0;
     for (int a = 0; a < of->arms; a++) {
       const double factor = of->arm[a].factor, *q = at->q + arm_row(&of->arm[a], i, at->count);
       for (int k = 0; k < at->some; k++) r[i][k] += factor * q[k];
@@ -50,7 +52,7 @@ static int pulls_value(int count, const double *t, const double *q, double *V, v
   return 0;
 }
 
-static void pull_add_gradient(const pull *of, const batch *at, double *V_q)
+PROBLEM_INLINE void pull_add_gradient(const pull *of, const batch *at, double *V_q)
 {
   double r[3][POINTS], r2[POINTS], force[POINTS];
   pull_vectors(of, at, r, r2);
@@ -63,15 +65,23 @@ static void pull_add_gradient(const pull *of, const batch *at, double *V_q)
     }
 }
 
+PROBLEM_INLINE void pulls_add_gradients(const pulls *all, const batch at, double *V_q)
+{
+  for (int j = 0; j < all->count; j++) pull_add_gradient(&all->pull[j], &at, V_q);
+}
+
+/* One point needs no loops over points. */
 static int pulls_gradient(int count, const double *t, const double *q, double *V_q, void *user)
 {
   const pulls *all = user;
   (void)t;
   memset(V_q, 0, (size_t)all->nq * (size_t)count * sizeof *V_q);
-  for (int first = 0; first < count; first += POINTS) {
-    const batch at = pulls_batch(count, first, q);
-    for (int j = 0; j < all->count; j++) pull_add_gradient(&all->pull[j], &at, V_q + first);
+  if (count == 1) {
+    pulls_add_gradients(all, (batch){1, 1, q}, V_q);
+    return 0;
   }
+  for (int first = 0; first < count; first += POINTS)
+    pulls_add_gradients(all, pulls_batch(count, first, q), V_q + first);
   return 0;
 }
 

@@ -38,15 +38,17 @@ FUSED static dvi__turn turn_of(const double w[3])
 
 FUSED static void turn_rows(const dvi__turn *turn, int count, double *x, double *compensation)
 {
-  for (int at = 0; at < count; at += 3) {
-    double head[3] = {0}, low[3] = {0};
-    const size_t bytes = (size_t)(count - at < 3 ? count - at : 3) * sizeof(double);
-    memcpy(head, x + at, bytes);
-    memcpy(low, compensation + at, bytes);
-    dvi__turn_row(turn, head, low);
-    memcpy(x + at, head, bytes);
-    memcpy(compensation + at, low, bytes);
-  }
+  const dvi__turn by = *turn; /* because the compiler cannot know that no store changes the turn */
+  int at = 0;
+  for (; at + 3 <= count; at += 3) dvi__turn_row(&by, x + at, compensation + at);
+  if (at == count) return;
+  double head[3] = {0}, low[3] = {0};
+  const size_t bytes = (size_t)(count - at) * sizeof(double);
+  memcpy(head, x + at, bytes);
+  memcpy(low, compensation + at, bytes);
+  dvi__turn_row(&by, head, low);
+  memcpy(x + at, head, bytes);
+  memcpy(compensation + at, low, bytes);
 }
 
 FUSED static void angular_of_direction(const double *y, const double *y_compensation,

@@ -41,15 +41,27 @@ FUSED_INLINE void dvi__twofold_cross(const dvi__twofold a[3], const dvi__twofold
   }
 }
 
+/* Compute a x b for b without tails. */
+FUSED_INLINE void dvi__twofold_cross_by(const dvi__twofold a[3], const double b[3],
+                                        dvi__twofold product[3])
+{
+  for (int i = 0; i < 3; i++) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    const dvi__twofold ahead = dvi__exact_product(a[j].head, b[k]),
+                       back = dvi__exact_product(-a[k].head, b[j]);
+    const double tails = a[j].tail * b[k] - a[k].tail * b[j];
+    product[i] = dvi__twofold_sum(ahead, back);
+    product[i].tail += tails;
+  }
+}
+
 /* Turn a row by x^T F = x^T + s z^T w^,  z^T = x^T (I + w^). */
 FUSED_INLINE void dvi__turn_twofold(const dvi__turn *turn, dvi__twofold x[3])
 {
-  static const double none[3] = {0};
-  dvi__twofold w[3], z[3], moved[3];
-  dvi__twofold_get(3, turn->w, none, w);
-  dvi__twofold_cross(x, w, z);
+  dvi__twofold z[3], moved[3];
+  dvi__twofold_cross_by(x, turn->w, z);
   for (int i = 0; i < 3; i++) z[i] = dvi__twofold_sum(x[i], z[i]);
-  dvi__twofold_cross(z, w, moved);
+  dvi__twofold_cross_by(z, turn->w, moved);
   for (int i = 0; i < 3; i++) {
     dvi__twofold change = dvi__exact_product(turn->s, moved[i].head);
     change.tail += turn->s * moved[i].tail + turn->s_low * moved[i].head;

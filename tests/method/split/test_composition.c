@@ -67,37 +67,6 @@ START_TEST(a_base_of_higher_order_keeps_its_order)
 }
 END_TEST
 
-/* Give the trace of the step of Verlet's method for q'' = -q, as the base, of length z. */
-static double trace_at(const dvi__scheme *s, double z)
-{
-  double a = 1, b = 0, c = 0, d = 1; /* the columns (q, p) of two motions */
-  for (int i = 0; i < s->substeps; i++) {
-    const double g = z * dvi__scheme_part(s, i);
-    c -= 0.5 * g * a;
-    d -= 0.5 * g * b;
-    a += g * c;
-    b += g * d;
-    c -= 0.5 * g * a;
-    d -= 0.5 * g * b;
-  }
-  return a + d;
-}
-
-/* The trace of a matrix with determinant 1 is that of a rotation (Hairer, Lubich and Wanner 2006,
- * sec. I.5.2). Where the trace touches 2, it counts as one. */
-START_TEST(all_steps_up_to_the_bound_are_stable)
-{
-  const double mesh = 1e-3, touch = 1e-9;
-  for (int order = 0; dvi__scheme_name(order) != NULL; order++) {
-    const dvi__scheme *s = dvi__scheme_at(order);
-    int i = 1;
-    while (fabs(trace_at(s, i * mesh)) <= 2 + touch) i++;
-    ck_assert_msg(fabs(s->stable - (i - 1) * mesh) < 1e-9, "order %d: %.9g", s->order,
-                  (i - 1) * mesh);
-  }
-}
-END_TEST
-
 START_TEST(verlet_keeps_its_one_gradient_a_substep)
 {
   problem *stars = create_problem("henon-heiles", NULL);
@@ -160,6 +129,5 @@ SUITE(composition)
   tcase_add_test(tests, a_composition_of_compositions_is_refused);
   tcase_add_loop_test(tests, the_substeps_add_up_to_the_step, 0, 3);
   tcase_add_test(tests, a_base_of_higher_order_keeps_its_order);
-  tcase_add_test(tests, all_steps_up_to_the_bound_are_stable);
   tcase_add_test(tests, verlet_keeps_its_one_gradient_a_substep);
 }

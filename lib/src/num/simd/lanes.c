@@ -448,10 +448,16 @@ int dvi__lanes_last_kick(const dvi__last_kick *last_kick)
   return best()->last_kick(last_kick);
 }
 
+/* So few numbers cost less than the choice of a loop. */
+enum { FEW = 8 };
+
 void dvi__lanes_add_scaled(size_t count, double factor, const double *x, double *sum,
                            double *compensation)
 {
-  best()->add_scaled(count, factor, x, sum, compensation);
+  if (count <= FEW)
+    (void)add_scaled1(0, count, factor, x, sum, compensation);
+  else
+    best()->add_scaled(count, factor, x, sum, compensation);
 }
 
 dvi__division dvi__division_by(double mass, double *scalar)
