@@ -56,6 +56,9 @@ dvi_status dvi__one_step_create(dvi__stepper *self, size_t size, const dvi__step
       .of = of,
       .residual = kind->residual,
       .jacobian = kind->jacobian,
+      .invert = kind->invert,
+      .correct = kind->correct,
+      .fill = kind->fill,
       .row_scale = kind->row_scale,
       .renewed = kind->renewed,
       .ahead = kind->renewed || (!kind->inexact && dvi__hessian_noise(self->system) == 0)};

@@ -38,6 +38,10 @@ typedef struct dvi__step_kind {
   void (*fixed_point_begin)(void *of, const double *x);
   dvi_status (*fixed_point_iterate)(void *of, double *change, double *largest);
   void (*fixed_point_end)(void *of, double *x);
+  /* The Jacobian in parts, as in dvi__equations; NULL if it is a matrix alone */
+  dvi_status (*invert)(void *of, const double *x, int *inverted);
+  void (*correct)(void *of, double *r);
+  void (*fill)(void *of, double *values);
   /* Newton's method factors each Jacobian, because forces cost more than factors, and the step
    * corrects increments from the last point */
   int renewed;
@@ -88,6 +92,23 @@ void dvi__one_step_explain(const dvi__stepper *self, dvi__text *text);
 
 #define DVI__ONE_STEP_OPERATIONS \
   .destroy = dvi__one_step_destroy, .start = dvi__one_step_start, .explain = dvi__one_step_explain
+
+/* Define the parts of the Jacobian of a step whose functions are dvi__foo_..., which are further
+ * members of its kind. */
+#define DVI__STEP_PARTS(foo)                                            \
+  static dvi_status invert_of(void *of, const double *x, int *inverted) \
+  {                                                                     \
+    return dvi__##foo##_invert(of, x, inverted);                        \
+  }                                                                     \
+  static void correct_of(void *of, double *r)                           \
+  {                                                                     \
+    dvi__##foo##_correct(of, r);                                        \
+  }                                                                     \
+  static void fill_of(void *of, double *values)                         \
+  {                                                                     \
+    dvi__##foo##_fill(of, values);                                      \
+  }
+#define DVI__STEP_PART_MEMBERS .invert = invert_of, .correct = correct_of, .fill = fill_of
 
 /* Define `kind` for a step whose functions are dvi__foo_..., with the functions `place` and
  * `explain`. Further members may follow. */

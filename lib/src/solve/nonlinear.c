@@ -69,11 +69,30 @@ static dvi_status solver_test_factor(dvi_status factored)
   return dvi__fail_in(DVI_NOT_CONVERGED, "the Jacobian of the step's equations cannot be factored");
 }
 
+/* Let the equations invert their Jacobian. */
+static dvi_status solver_invert(dvi__solver *solver, const double *x)
+{
+  const dvi__equations *equations = &solver->equations;
+  solver->counters->jacobians++;
+  DVI_TRY(equations->invert(equations->of, x, &solver->inverted));
+  solver->counters->factorizations += solver->inverted;
+  return DVI_OK;
+}
+
+static dvi_status solver_fill(dvi__solver *solver, const double *x)
+{
+  if (solver->equations.invert == NULL) return dvi__solver_jacobian(solver, x, solver->values);
+  solver->equations.fill(solver->equations.of, solver->values);
+  return DVI_OK;
+}
+
 dvi_status dvi__solver_factor(dvi__solver *solver, const double *x)
 {
-  solver->factored = 0;
+  solver->factored = solver->inverted = 0;
+  if (solver->equations.invert != NULL) DVI_TRY(solver_invert(solver, x));
+  if (solver->inverted) return DVI_OK;
   DVI_TRY(dvi__solver_prepare(solver));
-  DVI_TRY(dvi__solver_jacobian(solver, x, solver->values));
+  DVI_TRY(solver_fill(solver, x));
   const dvi_status factored = dvi__linear_factor(solver->linear, solver->values);
   solver->factored = factored == DVI_OK;
   solver->in_use = 1;
@@ -85,6 +104,7 @@ dvi_status dvi__solver_take_jacobian(dvi__solver *solver, const double *values)
   DVI_TRY(dvi__solver_prepare(solver));
   const size_t bytes = jacobian_entries(solver) * sizeof *values;
   solver->in_use = 1;
+  solver->inverted = 0;
   if (solver->factored && memcmp(solver->values, values, bytes) == 0) return DVI_OK;
   memcpy(solver->values, values, bytes);
   const dvi_status status = dvi__linear_factor(solver->linear, solver->values);
@@ -209,6 +229,11 @@ void dvi__solver_destroy(dvi__solver **solver)
 
 dvi_status dvi__solver_correction(dvi__solver *solver, double *r)
 {
+  if (solver->inverted) {
+    solver->counters->solves++;
+    solver->equations.correct(solver->equations.of, r);
+    return DVI_OK;
+  }
   if (solver->pairs == NULL) return dvi__linear_solve(solver->linear, r);
   for (int i = 0; i < solver->equations.unknowns; i++) {
     solver->pairs[2 * i] = r[i];

@@ -40,6 +40,12 @@ struct dvi__equations {
   const dvi__operator *whole;
   dvi_status (*residual)(void *of, const double *x, double *r);
   dvi_status (*jacobian)(void *of, const double *x, double *values);
+  /* The Jacobian in parts, or NULL. invert evaluates its derivatives at x, and tells whether
+   * correct can replace r by J^{-1} r there, for a determinant with the sign 1. If it cannot, fill
+   * writes the values, which are factored. */
+  dvi_status (*invert)(void *of, const double *x, int *inverted);
+  void (*correct)(void *of, double *r);
+  void (*fill)(void *of, double *values);
   dvi_status (*prepare_chord)(void *of, const double *x); /* NULL if nothing is to be prepared */
   void (*chord)(void *of, double *r);                     /* r <- C^{-1} r */
   /* Set scale [unknowns] > 0 to the size of a row per unit of an unknown. Called after

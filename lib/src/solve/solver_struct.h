@@ -18,6 +18,7 @@ struct dvi__solver {
   int factored;        /* values are factored */
   int unsolved;        /* the last correction was not found by an iterative solver */
   int in_use;          /* the current iteration uses them */
+  int inverted;        /* the equations have inverted the Jacobian in use */
   dvi__linear *linear; /* NULL if not prepared */
   dvi__kinsol *kinsol; /* NULL if not prepared */
   dvi__kinsol *tester; /* tests the equations' own variables; NULL if not prepared */
