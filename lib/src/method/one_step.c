@@ -66,6 +66,7 @@ dvi_status dvi__one_step_create(dvi__stepper *self, size_t size, const dvi__step
     equations.fixed_point_begin = kind->fixed_point_begin;
     equations.fixed_point_iterate = kind->fixed_point_iterate;
     equations.fixed_point_end = kind->fixed_point_end;
+    equations.fixed_point_frozen = kind->fixed_point_frozen;
   }
   DVI_TRY(dvi__stationary_create(self, &equations, &one->equations));
   one->x = one->equations.x;

@@ -38,6 +38,7 @@ typedef struct dvi__step_kind {
   void (*fixed_point_begin)(void *of, const double *x);
   dvi_status (*fixed_point_iterate)(void *of, double *change, double *largest);
   void (*fixed_point_end)(void *of, double *x);
+  int fixed_point_frozen;
   /* The Jacobian in parts, as in dvi__equations; NULL if it is a matrix alone */
   dvi_status (*invert)(void *of, const double *x, int *inverted);
   void (*correct)(void *of, double *r);
@@ -157,5 +158,29 @@ void dvi__one_step_explain(const dvi__stepper *self, dvi__text *text);
                                       .destroy = destroy_of,                      \
                                       .place = placed,                            \
                                       .explain = __VA_ARGS__}
+
+/* Define the functions of a kind's iteration, dvi__foo_has_iteration, _begin, _iterate and _finish,
+ * and give the entries for them in DVI__STEP_KIND. */
+#define DVI__STEP_ITERATION(foo)                                          \
+  static int has_iteration_of(const void *of)                             \
+  {                                                                       \
+    return dvi__##foo##_has_iteration(of);                                \
+  }                                                                       \
+  static void begin_of(void *of, const double *x)                         \
+  {                                                                       \
+    dvi__##foo##_begin(of, x);                                            \
+  }                                                                       \
+  static dvi_status iterate_of(void *of, double *change, double *largest) \
+  {                                                                       \
+    return dvi__##foo##_iterate(of, change, largest);                     \
+  }                                                                       \
+  static void finish_of(void *of, double *x)                              \
+  {                                                                       \
+    dvi__##foo##_finish(of, x);                                           \
+  }
+
+#define DVI__STEP_ITERATES                                          \
+  .has_iteration = has_iteration_of, .fixed_point_begin = begin_of, \
+  .fixed_point_iterate = iterate_of, .fixed_point_end = finish_of
 
 #endif

@@ -20,6 +20,7 @@ dvi_status dvi__stationary_create(dvi__stepper *self, dvi__equations *equations,
     return dvi__fail(DVI_NO_MEMORY, "%s: no memory for %zu unknowns", self->method->name, unknowns);
   equations->linear = dvi__linear_for_exchanges(equations->unknowns);
   stationary->has_iteration = equations->fixed_point_iterate != NULL;
+  stationary->frozen = equations->fixed_point_frozen;
   return dvi__solver_create(equations, self->counters, &stationary->solver);
 }
 
@@ -84,8 +85,16 @@ static dvi_status stationary_try(const dvi__stationary *s, const dvi__stationary
  * with each failure. */
 static const double longest_wait = 64;
 
-/* Try the iteration, unless it failed lately. Success leaves no doubt, because a contraction from
- * the guess is one for all shorter steps. */
+/* Judge the branch by the way to a solution, where a method of Newton's led there. */
+static void stationary_judge(dvi__stepper *stepper, const dvi__solve_report *report)
+{
+  const dvi__doubt doubt = dvi__branch_is_straight(report) ? DVI__LINEAR : DVI__DOUBTED;
+  stepper->bend = fmax(stepper->bend, report->bend);
+  if (!dvi__branch_is_near(report) && doubt > stepper->doubt) stepper->doubt = doubt;
+}
+
+/* Try the iteration, unless it failed lately. If its matrices are not those of the guess, success
+ * leaves no doubt, because a contraction is one for all shorter steps, too. */
 static dvi_status stationary_iterate(dvi__stationary *s, const dvi__stationary_step *step)
 {
   enum { STEPS, LAST };
@@ -98,6 +107,7 @@ static dvi_status stationary_iterate(dvi__stationary *s, const dvi__stationary_s
   const dvi_status status = stationary_try(s, step, DVI__FIXED_POINT, &report);
   s->iterated = status == DVI_OK;
   step->stepper->counters->fixed_points += s->iterated;
+  if (s->iterated && s->frozen) stationary_judge(step->stepper, &report);
   wait[LAST] = s->iterated ? 0 : wait[LAST] == 0 ? 1 : fmin(2 * wait[LAST], longest_wait);
   wait[STEPS] = wait[LAST];
   return status;
@@ -108,11 +118,11 @@ static dvi_status stationary_newton(const dvi__stationary *s, const dvi__station
   dvi__solve_report report;
   DVI_TRY(stationary_try(s, step, DVI__NEWTON, &report));
   step->stepper->counters->newtons++;
-  step->stepper->bend = fmax(step->stepper->bend, report.bend);
   /* more than fast convergence takes, with a foreseen end */
-  if (report.iterations <= 3 || dvi__branch_is_near(&report)) return DVI_OK;
-  const dvi__doubt doubt = dvi__branch_is_straight(&report) ? DVI__LINEAR : DVI__DOUBTED;
-  if (doubt > step->stepper->doubt) step->stepper->doubt = doubt;
+  if (report.iterations <= 3)
+    step->stepper->bend = fmax(step->stepper->bend, report.bend);
+  else
+    stationary_judge(step->stepper, &report);
   return DVI_OK;
 }
 

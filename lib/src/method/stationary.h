@@ -26,6 +26,7 @@ typedef struct dvi__stationary {
   double *x;         /* [unknowns] the solution */
   double *room;      /* [DVI__BRANCH_ROOM * unknowns] */
   int has_iteration; /* the equations have a fixed point iteration */
+  int frozen;        /* it is simplified Newton's method */
   int iterated;      /* the last solution is the iteration's */
   size_t ladder;     /* place of those numbers in the stepper's memory, which the caller sets */
 } dvi__stationary;

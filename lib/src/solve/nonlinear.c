@@ -311,12 +311,33 @@ static dvi_status fixed_point_begin(dvi__solver *s, const double *x)
   return DVI_OK;
 }
 
+/* Half a digit is worth an iteration. n x n systems cost a small part of the one that Newton's
+ * method factors. */
+static const dvi__criteria frozen_criteria = {
+    .stagnant = 0.35, .noise = 1e4 * DBL_EPSILON, .slowest = 0.3, .steady = 1};
+
+/* Report on the first two corrections of an iteration with the Jacobian of its guess. */
+static void note_frozen(const dvi__history *history, double whole, dvi__solve_report *report)
+{
+  if (report->iterations == 1) report->first = history->last / whole;
+  if (report->iterations == 2) report->contraction = report->bend = history->last / history->before;
+}
+
+/* Tell whether the next correction's own part no longer counts, where the step reads all results at
+ * the corrected point. */
+static int is_foreseen(const dvi__history *history, double whole)
+{
+  return history->contraction > 0 && history->contraction <= dvi__unseen_part(history->own / whole);
+}
+
 static dvi_status solve_by_fixed_point(dvi__solver *s, double size, int patient, double *x,
                                        dvi__solve_report *report)
 {
   const int most = dvi__fixed_point_most(patient);
-  const dvi__criteria criteria = dvi__fixed_point_criteria(
-      patient, s->equations.fixed_point_iterate != NULL);
+  const int frozen = s->equations.fixed_point_frozen;
+  const dvi__criteria criteria = frozen ? frozen_criteria
+                                        : dvi__fixed_point_criteria(
+                                              patient, s->equations.fixed_point_iterate != NULL);
   dvi__history history = {0};
   double whole;
   DVI_TRY(fixed_point_begin(s, x));
@@ -324,7 +345,8 @@ static dvi_status solve_by_fixed_point(dvi__solver *s, double size, int patient,
     DVI_TRY(fixed_point_iterate(s, x, &report->correction, &whole));
     const dvi__progress progress = dvi__test_correction(report->correction, &history, &criteria,
                                                         whole, size);
-    if (progress == DVI__CONVERGED) {
+    if (frozen) note_frozen(&history, whole, report);
+    if (progress == DVI__CONVERGED || (frozen && is_foreseen(&history, whole))) {
       s->whole = whole;
       if (s->equations.fixed_point_iterate != NULL)
         s->equations.fixed_point_end(s->equations.of, x);
@@ -338,11 +360,6 @@ static dvi_status solve_by_fixed_point(dvi__solver *s, double size, int patient,
                    "fixed point iteration contracts too slowly (change %.1e after %.1e)",
                    history.last, history.before);
 }
-
-/* Half a digit is worth an iteration. n x n systems cost a small part of the one that Newton's
- * method factors. */
-static const dvi__criteria frozen_criteria = {
-    .stagnant = 0.35, .noise = 1e4 * DBL_EPSILON, .slowest = 0.3, .steady = 1};
 
 static dvi_status solve_by_simplified_newton(dvi__solver *s, double size, int wary, double *x,
                                              dvi__solve_report *report)

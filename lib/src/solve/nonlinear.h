@@ -69,6 +69,8 @@ struct dvi__equations {
   void (*fixed_point_begin)(void *of, const double *x);
   dvi_status (*fixed_point_iterate)(void *of, double *change, double *largest);
   void (*fixed_point_end)(void *of, double *x);
+  /* that iteration is simplified Newton's method, with the Jacobian of its guess */
+  int fixed_point_frozen;
   /* Those variables, for a test of the solution. Their number, their values after the last
    * iteration, and the residual there, z less what one more iteration makes of it. z is a copy. */
   int own_unknowns;

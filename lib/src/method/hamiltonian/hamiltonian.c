@@ -91,29 +91,9 @@ static dvi_status hamiltonian_place(dvi__stepper *self, const dvi__state *state,
   return DVI_OK;
 }
 
-static int hamiltonian_has_iteration(const void *of)
-{
-  return dvi__canonical_has_iteration(of);
-}
+DVI__STEP_ITERATION(canonical)
 
-static void hamiltonian_begin(void *of, const double *x)
-{
-  dvi__canonical_begin(of, x);
-}
-
-static dvi_status hamiltonian_iterate(void *of, double *change, double *largest)
-{
-  return dvi__canonical_iterate(of, change, largest);
-}
-
-static void hamiltonian_end(void *of, double *x)
-{
-  dvi__canonical_end(of, x);
-}
-
-DVI__STEP_KIND(canonical, hamiltonian_place, hamiltonian_explain,
-               .has_iteration = hamiltonian_has_iteration, .fixed_point_begin = hamiltonian_begin,
-               .fixed_point_iterate = hamiltonian_iterate, .fixed_point_end = hamiltonian_end);
+DVI__STEP_KIND(canonical, hamiltonian_place, hamiltonian_explain, DVI__STEP_ITERATES);
 
 static dvi_status hamiltonian_refuse(const dvi__stepper *self, dvi_status status)
 {

@@ -161,7 +161,7 @@ dvi_status dvi__canonical_iterate(dvi__canonical *c, double *change, double *who
   return sweep(c, change, whole);
 }
 
-void dvi__canonical_end(const dvi__canonical *c, double *x)
+void dvi__canonical_finish(const dvi__canonical *c, double *x)
 {
   const dvi__canonical_iteration *own = &c->iteration;
   dvi__lanes_product(c->n, c->r, own->lanes, c->s, own->path, c->H_p, own->sum);

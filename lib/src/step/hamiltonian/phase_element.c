@@ -73,7 +73,8 @@ static dvi_status phase_initialise(dvi__phase_element *f, dvi_counters *counters
   DVI_TRY(phase_fill_tables(f));
   DVI_TRY(dvi__evaluator_create(f->system, f->d, DVI__HESSIANS, counters, &f->evaluator));
   DVI_TRY(dvi__phase_element_lay_out(f));
-  return phase_allocate(f);
+  DVI_TRY(phase_allocate(f));
+  return dvi__phase_iteration_create(f);
 }
 
 dvi_status dvi__phase_element_create(const dvi_system *system, int degree, int moments,
@@ -99,6 +100,7 @@ void dvi__phase_element_destroy(dvi__phase_element **phase)
   if (f == NULL) return;
   for (int i = 0; phase_owned_array(f, i) != NULL; i++) dvi__release(*phase_owned_array(f, i));
   dvi__phase_element_clear_layout(f);
+  dvi__phase_iteration_clear(&f->iteration);
   dvi__evaluator_destroy(&f->evaluator);
   dvi__release(f);
   *phase = NULL;
@@ -166,21 +168,15 @@ static void phase_points(dvi__phase_element *f, const double *x)
   }
 }
 
-/* Write one stage to f->point, and h Lambda there to f->weight. */
-static void take_stage(const dvi__phase_element *f, const double *x, int i)
+void dvi__phase_take(const dvi__phase_element *f, const double *multipliers, int i)
 {
-  for (int c = 0; c < 2 * f->n; c++) f->point[c] = f->Z[c * f->d + i];
-  for (int a = 0; a < f->m; a++) {
-    f->weight[a] = 0;
-    for (int l = 0; l < f->k; l++)
-      f->weight[a] += f->legendre[i][l] * phase_multipliers(f, x, a)[1 + l];
+  const int d = f->d, z = 2 * f->n;
+  if (i == d) memcpy(f->point, f->end, (size_t)z * sizeof *f->point);
+  for (int c = 0; i < d && c < z; c++) f->point[c] = f->Z[c * d + i];
+  for (int a = 0; a < f->m; a++, multipliers += f->k + 1) {
+    f->weight[a] = i == d ? multipliers[0] : 0;
+    for (int l = 0; i < d && l < f->k; l++) f->weight[a] += f->legendre[i][l] * multipliers[1 + l];
   }
-}
-
-static void take_end(const dvi__phase_element *f, const double *x)
-{
-  memcpy(f->point, f->end, 2 * (size_t)f->n * sizeof *f->point);
-  for (int a = 0; a < f->m; a++) f->weight[a] = phase_multipliers(f, x, a)[0];
 }
 
 /* Evaluate the constraint at f->point. Keep its gradients for `stage`, and write X_phi times the
@@ -197,7 +193,7 @@ static dvi_status phase_push_constraints(dvi__phase_element *f, int stage)
 /* ---- residual ---- */
 
 /* Set F = h X_H + h X_phi Lambda at the stages. Without moments no constraint acts there. */
-static dvi_status phase_vector_fields(dvi__phase_element *f, const double *x)
+static dvi_status phase_stage_fields(dvi__phase_element *f, const double *multipliers)
 {
   const int half = f->n * f->d;
   DVI_TRY(dvi__lagrangian_gradient(f->evaluator, f->d, f->t, f->Z, f->Z + half, f->F + half, f->F));
@@ -206,12 +202,20 @@ static dvi_status phase_vector_fields(dvi__phase_element *f, const double *x)
     f->F[half + c] *= -f->h;
   }
   for (int i = 0; i < f->d && f->k > 0; i++) {
-    take_stage(f, x, i);
+    dvi__phase_take(f, multipliers, i);
     DVI_TRY(phase_push_constraints(f, i));
     DVI_TRY(dvi__constraint_value(f->evaluator, f->point, f->point + f->n, f->phi + i * f->m));
     for (int c = 0; c < 2 * f->n; c++) f->F[c * f->d + i] += f->field[c];
   }
   return DVI_OK;
+}
+
+dvi_status dvi__phase_fields(dvi__phase_element *f, const double *multipliers)
+{
+  DVI_TRY(phase_stage_fields(f, multipliers));
+  dvi__phase_take(f, multipliers, f->d);
+  DVI_TRY(phase_push_constraints(f, f->d));
+  return dvi__constraint_value(f->evaluator, f->point, f->point + f->n, f->weight);
 }
 
 static double phase_moment(const dvi__phase_element *f, int constraint, int l)
@@ -225,10 +229,7 @@ dvi_status dvi__phase_element_residual(dvi__phase_element *f, const double *x, d
 {
   const int d = f->d;
   phase_points(f, x);
-  DVI_TRY(phase_vector_fields(f, x));
-  take_end(f, x);
-  DVI_TRY(phase_push_constraints(f, d));
-  DVI_TRY(dvi__constraint_value(f->evaluator, f->point, f->point + f->n, f->weight));
+  DVI_TRY(dvi__phase_fields(f, phase_multipliers(f, x, 0)));
   for (int c = 0; c < 2 * f->n; c++, R += d + 1) {
     const double *W = phase_row_of(f, x, c);
     R[d] = W[d] - f->kick[c] - 0.5 * f->field[c];
@@ -272,25 +273,33 @@ static dvi_status phase_add_constraints(dvi__phase_element *f, double *slope)
   return DVI_OK;
 }
 
-static dvi_status phase_slopes(dvi__phase_element *f, const double *x)
+dvi_status dvi__phase_slopes(dvi__phase_element *f, const double *multipliers)
 {
   const size_t entries = (size_t)dvi__pattern_entries(&f->joint);
   const int half = f->n * f->d;
   memset(f->slope, 0, entries * ((size_t)f->d + 1) * sizeof *f->slope);
   DVI_TRY(dvi__lagrangian_hessian(f->evaluator, f->d, f->t, f->Z, f->Z + half, f->H_qq, f->H_qp,
                                   f->H_pp));
-  for (int i = 0; i < f->d; i++) {
+  for (int i = 0; i <= f->d; i++) {
     double *slope = f->slope + (size_t)i * entries;
-    add_slope(&f->of_H, f->system->lagrangian, f->H_qq + i, f->H_qp + i, f->H_pp + i, f->d, f->h,
-              slope);
-    if (f->k == 0) continue;
-    take_stage(f, x, i);
-    DVI_TRY(phase_push_constraints(f, i));
+    if (i < f->d)
+      add_slope(&f->of_H, f->system->lagrangian, f->H_qq + i, f->H_qp + i, f->H_pp + i, f->d, f->h,
+                slope);
+    if (i < f->d && f->k == 0) continue;
+    dvi__phase_take(f, multipliers, i);
     DVI_TRY(phase_add_constraints(f, slope));
   }
-  take_end(f, x);
-  DVI_TRY(phase_push_constraints(f, f->d));
-  return phase_add_constraints(f, f->slope + (size_t)f->d * entries);
+  return DVI_OK;
+}
+
+/* Evaluate the gradients of the constraints at all points where they act. */
+static dvi_status phase_gradients(dvi__phase_element *f, const double *multipliers)
+{
+  for (int i = f->k > 0 ? 0 : f->d; i <= f->d; i++) {
+    dvi__phase_take(f, multipliers, i);
+    DVI_TRY(dvi__constraint_gradients(f->evaluator, f->point, f->point + f->n, gradients_at(f, i)));
+  }
+  return DVI_OK;
 }
 
 /* Fill the rows of a block of two components in column l, which belongs to W_l or to {z'} - {z}. */
@@ -332,7 +341,8 @@ dvi_status dvi__phase_element_jacobian(dvi__phase_element *f, const double *x, d
 {
   const int z = 2 * f->n;
   phase_points(f, x);
-  DVI_TRY(phase_slopes(f, x));
+  DVI_TRY(phase_gradients(f, phase_multipliers(f, x, 0)));
+  DVI_TRY(dvi__phase_slopes(f, phase_multipliers(f, x, 0)));
   for (int j = 0; j < f->joint.columns; j++)
     for (int l = 0; l <= (j < z ? f->d : f->k); l++)
       for (int e = f->joint.start[j]; e < f->joint.start[j + 1]; e++) {
@@ -381,7 +391,7 @@ dvi_status dvi__phase_element_jump(dvi__phase_element *f, const double *x, doubl
 {
   const size_t bytes = 2 * (size_t)f->n * sizeof *jump;
   phase_points(f, x);
-  take_end(f, x);
+  dvi__phase_take(f, phase_multipliers(f, x, 0), f->d);
   DVI_TRY(phase_push_constraints(f, f->d));
   memcpy(jump, f->field, bytes);
   memcpy(change, f->field, bytes);

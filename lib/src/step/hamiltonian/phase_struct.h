@@ -12,6 +12,34 @@ typedef struct dvi__vector_field_places {
   int *qq, *qp_in_p, *qp_in_q, *pp;
 } dvi__vector_field_places;
 
+/* Largest number of rows of a matrix in the iteration. */
+enum { DVI__PHASE_ROWS_MOST = 16 };
+
+/* Numbers of the iteration (phase_iteration.c). Rows of numbers at the stages have `lanes` numbers,
+ * of which those behind the stages are 0. Matrices are those of the guess. */
+typedef struct dvi__phase_iteration {
+  int lanes, is_frozen;
+  double *numbers;     /* storage of all arrays */
+  double *a;           /* [d][lanes] columns of a */
+  double *a_moment;    /* [k][d][lanes] columns of a_ij P_l(c_j) */
+  double *moment;      /* [k][lanes] b_i P_l(c_i) */
+  double *legendre;    /* [k][lanes] P_l(c_i) */
+  double *W, *D;       /* [2n][lanes] and [2n] unknowns */
+  double *multipliers; /* [m][1+k] unknowns, as in x */
+  /* residuals and corrections; those of the multipliers are [m][k] and [m] */
+  double *of_W, *of_D, *of_moment, *of_end;
+  double *gradient, *field;           /* [m][2n][lanes] phi_z and X_phi at the stages */
+  double *moved;                      /* [m][k][2n][lanes] A X_phi P_l */
+  double *slope;                      /* [entries][lanes] */
+  double *end_gradient, *end_field;   /* [m][2n] */
+  double *end_slope;                  /* [entries] */
+  double *base, *there, *change;      /* [2n][lanes] */
+  int entries, *entry, *row, *column; /* entries of joint for two components of z */
+  double *moments, *end; /* by rows, [m*k][2*m*k] and [m][2*m], with room for the inverse */
+  double *moments_inverse, *end_inverse; /* by rows */
+  double *multiplier;                    /* [m*(1+k)] */
+} dvi__phase_iteration;
+
 struct dvi__phase_element {
   const dvi_system *system;
   dvi__evaluator *evaluator;
@@ -39,7 +67,29 @@ struct dvi__phase_element {
    * lambda') at the end */
   double *slope;
   double *point, *end, *field, *weight; /* [2n], [2n], [2n], [m] */
+  dvi__phase_iteration iteration;
 };
+
+/* Write stage i, or the end i = d, with the multipliers there to point and weight. */
+void dvi__phase_take(const dvi__phase_element *phase, const double *multipliers, int i);
+
+/* Set F, phi and the gradients at the points, with X_phi times the multipliers of the end in field,
+ * and phi of the end in weight. */
+dvi_status dvi__phase_fields(dvi__phase_element *phase, const double *multipliers);
+
+/* Set slope at the points. Gradients there are those of the last residual. */
+dvi_status dvi__phase_slopes(dvi__phase_element *phase, const double *multipliers);
+
+/* Take the matrices of the iteration at the point of the last residual. DVI_NOT_CONVERGED if they
+ * cannot be inverted. */
+dvi_status dvi__phase_freeze(dvi__phase_element *phase);
+
+/* Replace the residuals of the iteration by corrections (phase_correction.c). */
+void dvi__phase_correct(dvi__phase_element *phase);
+
+/* Make the iteration of an element that has one. */
+dvi_status dvi__phase_iteration_create(dvi__phase_element *phase);
+void dvi__phase_iteration_clear(dvi__phase_iteration *iteration);
 
 /* Make joint and pattern, and all indices into them. */
 dvi_status dvi__phase_element_lay_out(dvi__phase_element *phase);
