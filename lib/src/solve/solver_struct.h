@@ -22,7 +22,9 @@ struct dvi__solver {
   dvi__linear *linear; /* NULL if not prepared */
   dvi__kinsol *kinsol; /* NULL if not prepared */
   dvi__kinsol *tester; /* tests the equations' own variables; NULL if not prepared */
+  dvi__kinsol *many;   /* tests many solutions in these at once (certify.h); NULL if not prepared */
   double whole;        /* largest of those after the last iteration */
+  int has_point;       /* the tester has the point before it */
 };
 
 /* Evaluate the residual and count it. */
@@ -57,12 +59,16 @@ dvi_status dvi__newton(dvi__solver *solver, double size, int wary, double *x,
 
 /* KINSOL (kinsol.c). After a positive status of dvi__kinsol_solve there is no solution, and x holds
  * the last point. `own` makes one for the equations' own variables, which does nothing but
- * certify. */
+ * certify. If it is more than 1, that is the number of solutions at once. */
 dvi_status dvi__kinsol_create(dvi__solver *solver, int own, dvi__kinsol **kinsol);
 void dvi__kinsol_destroy(dvi__kinsol **kinsol);
 /* Find whether x is a solution by KINSOL's own test of its residual. */
 dvi_status dvi__kinsol_certify(dvi__kinsol *kinsol, double size, const double *x, int *certified,
                                dvi__solve_report *report);
+/* Certify solutions in own variables by residuals that are known (certify.h). */
+double *dvi__kinsol_point(dvi__kinsol *kinsol, int i);
+dvi_status dvi__kinsol_note(dvi__kinsol *kinsol, int i, const double *next, double whole);
+int dvi__kinsol_certify_known(dvi__kinsol *kinsol, int count);
 dvi_status dvi__kinsol_solve(dvi__kinsol *kinsol, double size, double *x,
                              dvi__solve_report *report);
 

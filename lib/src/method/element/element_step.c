@@ -11,6 +11,7 @@
 #include "core/status.h"
 #include "num/compensated.h"
 #include "num/finite.h"
+#include "solve/certify.h"
 
 /* Number of iterations that a kept factor may cost more than a new one, about as much as making
  * one. */
@@ -132,7 +133,6 @@ static dvi_status element_decouple(dvi__stepper *self, dvi__element *own)
 static dvi_status element_create_solver(dvi__stepper *self, dvi__element *own)
 {
   const int has_fixed_point = dvi__action_has_fixed_point(own->action);
-  self->marches = dvi__element_marches(self);
   dvi__equations equations = {
       .unknowns = dvi__action_unknowns(own->action),
       .group = dvi__action_space_of(own->action).degree,
@@ -157,6 +157,7 @@ static dvi_status element_create_solver(dvi__stepper *self, dvi__element *own)
   if (equations.unknowns > self->system->n * equations.group)
     equations.linear = dvi__linear_for_exchanges(equations.unknowns);
   dvi__element_set_newton(&equations);
+  dvi__element_admit_march(self);
   return dvi__solver_create(&equations, self->counters, &own->solver);
 }
 
@@ -548,6 +549,8 @@ dvi_status dvi__element_step(dvi__stepper *self, dvi__state *state, double h)
   dvi__element *own = self->own;
   dvi__solve_report report = {0};
   const dvi__element_place at = element_place(self, state, h);
+  if (own->choice == DVI__SOLVER_CERTIFIED && dvi__action_has_offsets(own->action))
+    DVI_TRY(dvi__certify_prepare(own->solver, own->most_together));
   dvi__action_soften(own->action, state->side > 1);
   DVI_TRY(element_find_path(self, &at, &report));
   DVI_TRY(element_ends(own, own->Y));

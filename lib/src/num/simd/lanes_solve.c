@@ -14,9 +14,12 @@
   {                                                                                        \
     const dvi__lanes_solving s = *solving; /* a copy, which nothing else writes */         \
     dvi__fixed_point *const own = s.iteration;                                             \
+    const size_t numbers = (size_t)own->n * (size_t)own->lanes;                            \
     dvi__history history = {0};                                                            \
     for (int i = 1; i <= s.most; i++) {                                                    \
       if (s.evaluate(own->stages, s.t, own->Q, own->force, s.of) != 0) return -i;          \
+      if (s.before != NULL)                                                                \
+        for (size_t k = 0; k < numbers; k++) s.before[k] = own->Z[k];                      \
       iterate;                                                                             \
       const dvi__progress progress = dvi__settling_test(own->change, &history, s.criteria, \
                                                         own->largest, s.size);             \

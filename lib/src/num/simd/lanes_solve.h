@@ -12,8 +12,9 @@ typedef struct dvi__lanes_solving {
   void *of;
   const double *t; /* [stages] */
   const dvi__criteria *criteria;
-  int most;    /* largest number of iterations */
-  double size; /* as in dvi__test_correction */
+  int most;       /* largest number of iterations */
+  double size;    /* as in dvi__test_correction */
+  double *before; /* [n*lanes] result, Z before the last iteration, or NULL */
 } dvi__lanes_solving;
 
 /* Iterate from the places Q until the test of num/simd/settling.h is met. Returns the number of

@@ -61,26 +61,25 @@ void dvi__action_fixed_point_continue(dvi__action *action, double ratio, const d
  * offset. */
 dvi_status dvi__action_iterate(dvi__action *action, double *change, double *largest);
 
-/* Steps of one length and of one potential's forces alone, one after the other (num/simd/lanes.h).
- * Each starts from the forces of the one before. */
-typedef struct dvi__plain_steps {
+/* Steps of one length, one after the other. Each starts from the forces of the one before. */
+typedef struct dvi__element_steps {
   dvi__action *action;
+  /* the iteration; without `evaluate` it is not one by the forces of one potential alone, and is
+   * made by dvi__action_iterate */
   dvi__lanes_solving solving;
+  double largest; /* the largest offset of the last step */
   dvi__ends ends;
   const double *shift; /* the table by which the forces continue */
-} dvi__plain_steps;
-
-/* Tell whether the iteration's steps are of this kind. */
-int dvi__action_has_plain_steps(const dvi__action *action);
+} dvi__element_steps;
 
 /* Prepare steps of length h from q0 and p0, with dq, dq_low and dp as in dvi__action_ends. The
- * caller sets the criteria, and counts the gradients. */
+ * caller sets the criteria. */
 void dvi__action_begin_steps(dvi__action *action, double h, const double *q0, const double *p0,
-                             double *dq, double *dq_low, double *dp, dvi__plain_steps *steps);
+                             double *dq, double *dq_low, double *dp, dvi__element_steps *steps);
 
 /* Solve one step from t, with the forces g of the last one, which was h / ratio long. g becomes
  * the new forces. Returns the number of iterations, with the other sign if they fail. */
-int dvi__action_solve_step(dvi__plain_steps *steps, double t, double ratio, double *g);
+int dvi__action_solve_step(dvi__element_steps *steps, double t, double ratio, double *g);
 
 /* Tell whether the iteration is on the nodes' offsets, as above. Its forces then give the path. */
 int dvi__action_has_offsets(const dvi__action *action);
