@@ -58,7 +58,7 @@ sleigh | 20 | | nonholonomic
 rolling-disk | 50 | | nonholonomic
 spherical-constrained | 20 | | galerkin:degree=4 galerkin:degree=6
 slider-crank | 2 | | galerkin
-andrews | 0.03 | | galerkin:degree=4 galerkin:degree=6
+andrews | 0.03 | | galerkin:degree=3 galerkin:degree=4 galerkin:degree=6
 END
 }
 
