@@ -116,8 +116,8 @@ static int keeps_factor(const dvi__solver *s, const dvi__history *history, const
 
 /* Find whether the rows are at their floor, where corrections settle or do not shrink any more, and
  * after the first one, which may be the only one. It then leaves as small a part of the residual as
- * a rounding is of the correction. *evaluated tells whether solver->residual holds the residual at x
- * instead of the correction. */
+ * a rounding is of the correction. *evaluated tells whether solver->residual holds the residual at
+ * x instead of the correction. */
 static dvi_status test_rows(dvi__solver *s, const double *x, const dvi__criteria *criteria,
                             const dvi__history *history, double whole, int settled,
                             const dvi__solve_report *report, int *evaluated, int *at_floor)
