@@ -214,8 +214,9 @@ START_TEST(a_row_that_is_rounding_is_solved)
 }
 END_TEST
 
-/* The rows are looked at once more only where the first correction may have left a rounding. */
-START_TEST(a_small_first_correction_may_be_the_last)
+/* The rows are looked at after the first correction, which may be the only one. If it is not, the
+ * next one is of this residual. */
+START_TEST(the_first_correction_may_be_the_last)
 {
   single_equation equation = {parabola, parabola_slope, 0.5, -HUGE_VAL, 0};
   solver_bench bench;
@@ -448,7 +449,7 @@ SUITE(ladder)
   tcase_add_loop_test(tests, a_singular_jacobian_is_a_step_s_failure, 0, 2);
   tcase_add_loop_test(tests, a_start_on_a_critical_point_is_a_failure, 0, 2);
   tcase_add_loop_test(tests, a_row_that_is_rounding_is_solved, 0, 2);
-  tcase_add_test(tests, a_small_first_correction_may_be_the_last);
+  tcase_add_test(tests, the_first_correction_may_be_the_last);
   tcase_add_loop_test(tests, shifts_of_singular_jacobians_give_steps_of_least_norm, 0, 2);
   tcase_add_loop_test(tests, own_variables_are_certified_by_one_residual, 0, 7);
   tcase_add_loop_test(tests, the_last_iteration_certifies_a_solution, 0, 4);

@@ -25,10 +25,6 @@ static const dvi__criteria roundoff = {.stagnant = 0.5, .noise = 1e4 * DBL_EPSIL
  * Jacobians give no squares, and settle nothing. */
 static const double small_correction = 1e-4, idle_ratio = 0.25;
 
-/* A first correction of this part of the unknowns may leave a rounding, as its square does in most
- * rows. */
-static const double small_first = 1e-6;
-
 /* Corrections of noisy residuals may be noise from larger ones on. */
 static dvi__criteria newton_criteria(const dvi__solver *s)
 {
@@ -118,12 +114,22 @@ static int keeps_factor(const dvi__solver *s, const dvi__history *history, const
   return part <= now->unseen;
 }
 
-/* Tell whether rows may be at their floor, because corrections do not shrink, or the first one is
- * small. */
-static int may_be_at_floor(const dvi__history *history, double correction, double whole)
+/* Find whether the rows are at their floor, where corrections settle or do not shrink any more, and
+ * after the first one, which may be the only one. It then leaves as small a part of the residual as
+ * a rounding is of the correction. *evaluated tells whether solver->residual holds the residual at
+ * x instead of the correction. */
+static dvi_status test_rows(dvi__solver *s, const double *x, const dvi__criteria *criteria,
+                            const dvi__history *history, double whole, int settled,
+                            const dvi__solve_report *report, int *evaluated, int *at_floor)
 {
-  return history->before > 0 ? correction >= roundoff.stagnant * history->before
-                             : correction <= small_first * whole;
+  const int is_first = history->before == 0,
+            stays = report->correction >= criteria->stagnant * history->before;
+  *at_floor = *evaluated = 0;
+  if (s->magnitude == NULL || !(settled || stays)) return DVI_OK;
+  *evaluated = 1;
+  return dvi__solver_at_floor(
+      s, x, settled,
+      is_first ? criteria->noise * whole / report->correction * report->row : HUGE_VAL, at_floor);
 }
 
 dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__solve_report *report)
@@ -132,11 +138,11 @@ dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__so
   dvi__history history = {0};
   outlook now = {.next = HUGE_VAL, .reach = HUGE_VAL};
   double whole, last_relative = HUGE_VAL;
-  int kept = 0, growing = 0, settled = 0, converged = 0;
+  int kept = 0, growing = 0, settled = 0, converged = 0, evaluated = 0, at_floor = 0;
   report->idle = 0;
   for (report->iterations = 1; report->iterations <= MOST_ITERATIONS; report->iterations++) {
     if (!kept) DVI_TRY(dvi__solver_factor(s, x));
-    DVI_TRY(dvi__solver_residual(s, x, s->residual));
+    if (!kept || !evaluated) DVI_TRY(dvi__solver_residual(s, x, s->residual));
     report->row = dvi__largest((size_t)s->equations.unknowns, s->residual);
     const dvi_status solved = dvi__solver_correction(s, s->residual);
     s->unsolved = solved != DVI_OK;
@@ -153,12 +159,12 @@ dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__so
               is_idle = is_small && history.before > 0 &&
                         report->correction >= idle_ratio * history.before;
     converged = has_settled;
-    int at_floor = 0; /* its test overwrites the correction */
     report->idle = is_small ? report->idle + is_idle : 0;
     settled = is_small ? settled + (is_idle && !kept) : 0;
-    if (progress != DVI__CONVERGED &&
-        (settled > 1 || may_be_at_floor(&history, report->correction, whole)))
-      DVI_TRY(dvi__solver_at_floor(s, x, settled > 1, &at_floor));
+    evaluated = 0;
+    if (progress != DVI__CONVERGED)
+      DVI_TRY(
+          test_rows(s, x, &criteria, &history, whole, settled > 1, report, &evaluated, &at_floor));
     if (at_floor) return DVI_OK;
     if (converged && small_ones_settled(part, &last_relative)) return DVI_OK;
     growing = progress == DVI__STALLED ? growing + 1 : 0;

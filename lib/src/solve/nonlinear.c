@@ -165,7 +165,8 @@ static void add_moved(const dvi__solver *solver, const double *x, double *sum)
       sum[pattern->row[e]] += fabs(solver->values[width_of(solver) * e] * x[j]);
 }
 
-dvi_status dvi__solver_at_floor(dvi__solver *solver, const double *x, int settled, int *at_floor)
+dvi_status dvi__solver_at_floor(dvi__solver *solver, const double *x, int settled, double most,
+                                int *at_floor)
 {
   const size_t unknowns = (size_t)solver->equations.unknowns;
   *at_floor = 0;
@@ -173,6 +174,7 @@ dvi_status dvi__solver_at_floor(dvi__solver *solver, const double *x, int settle
   memset(solver->moved, 0, unknowns * sizeof(double));
   if (settled && solver->in_use) add_moved(solver, solver->residual, solver->moved);
   DVI_TRY(dvi__solver_residual(solver, x, solver->residual));
+  if (!(dvi__largest(unknowns, solver->residual) <= most)) return DVI_OK;
   solver->equations.magnitudes(solver->equations.of, solver->magnitude);
   if (solver->in_use) add_moved(solver, x, solver->magnitude);
   *at_floor = 1;
@@ -393,7 +395,7 @@ static dvi_status solve_by_simplified_newton(dvi__solver *s, double size, int wa
     const dvi__progress progress = dvi__test_correction(report->correction, &history,
                                                         &frozen_criteria, whole, size);
     int converged = progress == DVI__CONVERGED;
-    if (progress == DVI__STALLED) DVI_TRY(dvi__solver_at_floor(s, x, 0, &converged));
+    if (progress == DVI__STALLED) DVI_TRY(dvi__solver_at_floor(s, x, 0, HUGE_VAL, &converged));
     if (converged) return DVI_OK;
     if (progress == DVI__STALLED ||
         (wary && report->iterations == 2 && dvi__misleading(&history, whole)))

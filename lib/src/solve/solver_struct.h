@@ -38,8 +38,10 @@ dvi_status dvi__solver_correction(dvi__solver *solver, double *r);
 
 /* Find whether every row at x is 0 to a rounding of what is summed in it and of the unknowns, as
  * the Jacobian in use sees them. With `settled` small corrections have not shrunk any more, and
- * rows may be left with their squares. solver->residual holds the last correction, and loses it. */
-dvi_status dvi__solver_at_floor(dvi__solver *solver, const double *x, int settled, int *at_floor);
+ * rows may be left with their squares. Rows above `most` are not there. solver->residual holds the
+ * last correction, and then the residual at x if the sizes of rows are known. */
+dvi_status dvi__solver_at_floor(dvi__solver *solver, const double *x, int settled, double most,
+                                int *at_floor);
 
 /* Give the least part of the largest unknown beside which groups of unknowns are measured. Smaller
  * groups may be noise. */

@@ -85,15 +85,23 @@ static int row_of_pivot(int n, int k, const double *column)
   return at;
 }
 
-/* Exchange two rows of the columns that are not done, and of L. */
+/* Exchange two numbers of each of some columns. */
+INLINE void exchange(int columns, int stride, double *one, double *other)
+{
+  for (int j = 0; j < columns; j++, one += stride, other += stride) {
+    const double kept = *one;
+    *one = *other;
+    *other = kept;
+  }
+}
+
+/* Exchange two rows of L and of the columns that are not done. */
 static void exchange_rows(const dvi__small_lu *lu, int k, int with)
 {
-  for (int j = 0; j < lu->n; j++) {
-    double *column = (j < k ? lu->lower : lu->upper) + j * lu->stride;
-    const double kept = column[k];
-    column[k] = column[with];
-    column[with] = kept;
-  }
+  const int stride = lu->stride;
+  double *rest = lu->upper + k * stride;
+  exchange(k, stride, lu->lower + k, lu->lower + with);
+  exchange(lu->n - k, stride, rest + k, rest + with);
 }
 
 /* Make column k one of L and one of U, and subtract it from those behind it, up to `end`. Gives the
