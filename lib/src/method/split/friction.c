@@ -138,9 +138,15 @@ static dvi_status correct_velocity(dvi__friction *f, const dvi__state *state, do
                                    const pushed *at, double *change)
 {
   const int n = f->system->n;
+  const double *mass = f->system->mass_diagonal, half = 0.5 * h;
   f->counters->residuals++;
-  DVI_TRY(dvi__lagrangian_gradient(f->evaluator, 1, &state->t, state->q, at->v, NULL, f->residual));
-  for (int i = 0; i < n; i++) f->residual[i] = f->given[i] + 0.5 * h * at->F[i] - f->residual[i];
+  if (mass == NULL)
+    DVI_TRY(
+        dvi__lagrangian_gradient(f->evaluator, 1, &state->t, state->q, at->v, NULL, f->residual));
+  for (int i = 0; i < n; i++) {
+    const double p = mass != NULL ? mass[i] * at->v[i] : f->residual[i];
+    f->residual[i] = f->given[i] + half * at->F[i] - p;
+  }
   if (renew) DVI_TRY(factor_matrix(f, state, h, at));
   DVI_TRY(solve_matrix(f, f->residual));
   *change = dvi__largest((size_t)n, f->residual);

@@ -78,7 +78,7 @@ int dvi__verlet_alone_steps(const dvi__verlet_alone *own, const dvi__state *now,
                             const double *before, dvi__state *next, double *gradient,
                             const double *h, int count)
 {
-  const int n = own->system->n;
+  const int n = own->system->n, few = n <= FEW;
   const dvi__state *from = now;
   move by = {.kicks = 1, .force = before};
   next->t = now->t;
@@ -86,11 +86,13 @@ int dvi__verlet_alone_steps(const dvi__verlet_alone *own, const dvi__state *now,
   for (int i = 0; i < count; i++, from = next) {
     by.kick[by.kicks - 1] = -0.5 * h[i];
     by.drift = h[i];
-    if (!(n <= FEW ? kick_drift_few : kick_drift_many)(own, &by, from, next)) return 0;
+    if (!(few ? kick_drift_few(own, &by, from, next) : kick_drift_many(own, &by, from, next)))
+      return 0;
     dvi__add_compensated(&next->t, &next->t_compensation, h[i]);
     if (dvi__potentials_gradient_untested(own->evaluator, 1, &next->t, next->q, gradient) != DVI_OK)
       return 0;
     by = (move){.kicks = 2, .kick = {-0.5 * h[i]}, .force = gradient};
   }
-  return (n <= FEW ? last_kick_few : last_kick_many)(n, by.kick[0], gradient, next);
+  return few ? last_kick_few(n, by.kick[0], gradient, next)
+             : last_kick_many(n, by.kick[0], gradient, next);
 }
