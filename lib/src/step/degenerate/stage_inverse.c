@@ -1,17 +1,14 @@
 #include "step/degenerate/stage_inverse.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "num/simd/small_inverse.h"
 #include "num/simd/wide.h"
 #include "num/simd/width.h"
 
-enum { LANES = DVI__STAGE_LANES, BLOCK = 4, MOST_UNKNOWNS = 32 };
-
-/* Pivots of a matrix near 1 are near 1. */
-static const double least_pivot = 1.0 / 16, largest_pivot = 16;
+enum { LANES = DVI__STAGE_LANES, BLOCK = 4, MOST_UNKNOWNS = DVI__SMALL_INVERSE_MOST };
 
 typedef double block __attribute__((vector_size(BLOCK * sizeof(double)), aligned(8), may_alias));
 
@@ -28,43 +25,6 @@ struct dvi__stage_inverse {
 
 /* ---- create ---- */
 
-static void exchange_columns(int n, double *x, double *y)
-{
-  for (int i = 0; i < n; i++) {
-    const double kept = x[i];
-    x[i] = y[i];
-    y[i] = kept;
-  }
-}
-
-/* Replace a full matrix [n*n] by its inverse, with exchanges of columns. Returns 0 if it is
- * singular. */
-static int invert_full(int n, double *A)
-{
-  int from[MOST_UNKNOWNS];
-  for (int k = 0; k < n; k++) {
-    double *column = A + k * n;
-    from[k] = k;
-    for (int j = k + 1; j < n; j++)
-      if (fabs(A[j * n + k]) > fabs(A[from[k] * n + k])) from[k] = j;
-    if (from[k] != k) exchange_columns(n, column, A + from[k] * n);
-    const double pivot = column[k];
-    if (!(fabs(pivot) > 0)) return 0;
-    column[k] = 1;
-    for (int i = 0; i < n; i++) column[i] /= pivot;
-    for (int j = 0; j < n; j++) {
-      const double factor = A[j * n + k];
-      if (j == k) continue;
-      A[j * n + k] = 0;
-      for (int i = 0; i < n; i++) A[j * n + i] -= factor * column[i];
-    }
-  }
-  for (int k = n - 1; k >= 0; k--)
-    for (int j = 0; j < n && from[k] != k; j++)
-      exchange_columns(1, &A[j * n + k], &A[j * n + from[k]]);
-  return 1;
-}
-
 /* Fill the constant tables. Returns 0 if G is singular. */
 static int stage_inverse_fill_tables(dvi__stage_inverse *s, const dvi__stage_tableau *tableau)
 {
@@ -72,7 +32,7 @@ static int stage_inverse_fill_tables(dvi__stage_inverse *s, const dvi__stage_tab
   double packed[LANES * LANES];
   for (int l = 0; l < m; l++)
     for (int k = 0; k < m; k++) packed[l * m + k] = s->moved[l][k] = tableau->moved[l][k];
-  if (!invert_full(m, packed)) return 0;
+  if (dvi__small_invert(m, packed) == 0) return 0;
   for (int k = 0; k < m; k++) {
     const int is_end = s->has_end && k == m - 1;
     s->sign[k] = is_end ? -1 : 1;
@@ -90,7 +50,7 @@ static int stage_inverse_fill_tables(dvi__stage_inverse *s, const dvi__stage_tab
 static int stage_inverse_allocate(dvi__stage_inverse *s)
 {
   const size_t n = (size_t)s->n, unknowns = (size_t)s->unknowns;
-  s->stride = (s->unknowns + BLOCK - 1) / BLOCK * BLOCK;
+  s->stride = dvi__near_one_stride(s->unknowns);
   s->given = DVI_NEW(dvi__stage_entry, n * n);
   s->turned = DVI_NEW(dvi__stage_entry, n * n);
   s->Omega = DVI_NEW(double, n *n);
@@ -146,7 +106,7 @@ static int fill_two_form(const dvi__stage_inverse *s, int count, const double *w
     for (int k = 0; k < count; k++) sum += weight[k] * (of->A[k] - of->B[k]);
     s->Omega[at] = sum;
   }
-  return invert_full(s->n, s->Omega);
+  return dvi__small_invert(s->n, s->Omega) != 0;
 }
 
 INLINE void add_multiple(double by, const double *x, double *sum)
@@ -204,58 +164,26 @@ INLINE void write_matrix(const dvi__stage_inverse *s)
                    s->inverse + (j * s->m + l) * s->stride + i * s->m);
 }
 
-/* Invert the matrix of columns of `blocks` blocks (Gauss and Jordan), without exchanges. Returns 0
- * if a pivot is far from 1. */
-INLINE int invert_near_one(const dvi__stage_inverse *s, const int blocks)
-{
-  for (int k = 0; k < s->unknowns; k++) {
-    double *column = s->inverse + k * blocks * BLOCK;
-    const double pivot = column[k], by = 1 / pivot;
-    if (!(pivot > least_pivot && pivot < largest_pivot)) return 0;
-    for (int i = 0; i < blocks; i++) ((block *)column)[i] *= by;
-    column[k] = 1 + by; /* leaves -factor * by of the factor in row k */
-    for (int j = 0; j < s->unknowns; j++) {
-      double *other = s->inverse + j * blocks * BLOCK;
-      const double factor = j != k ? other[k] : 0;
-      for (int i = 0; i < blocks; i++) ((block *)other)[i] -= factor * ((const block *)column)[i];
-    }
-    column[k] = by;
-  }
-  return 1;
-}
-
-INLINE int invert_in_blocks(const dvi__stage_inverse *s)
-{
-  switch (s->stride / BLOCK) {
-  case 1: return invert_near_one(s, 1);
-  case 2: return invert_near_one(s, 2);
-  case 3: return invert_near_one(s, 3);
-  case 4: return invert_near_one(s, 4);
-  case 5: return invert_near_one(s, 5);
-  case 6: return invert_near_one(s, 6);
-  case 7: return invert_near_one(s, 7);
-  default: return invert_near_one(s, MOST_UNKNOWNS / BLOCK);
-  }
-}
-
-WIDE static int write_and_invert(const dvi__stage_inverse *s)
+WIDE static void turn_and_write(const dvi__stage_inverse *s)
 {
   turn_entries(s);
   write_matrix(s);
-  return invert_in_blocks(s);
 }
 
 int dvi__stage_inverse_begin(dvi__stage_inverse *s, int count, const double *weight)
 {
-  return fill_two_form(s, count, weight) && write_and_invert(s);
+  if (!fill_two_form(s, count, weight)) return 0;
+  turn_and_write(s);
+  return dvi__near_one_invert(s->unknowns, s->inverse);
 }
 
 /* ---- solve ---- */
 
-WIDE static void stage_inverse_times(const dvi__stage_inverse *s, double *r)
+/* Multiply by -Omega^-1 G^-1. */
+WIDE static void turn_rows(const dvi__stage_inverse *s, const double *r, double *x)
 {
   const int m = s->m, n = s->n;
-  double back[MOST_UNKNOWNS * LANES] = {0}, x[MOST_UNKNOWNS + LANES], y[MOST_UNKNOWNS];
+  double back[MOST_UNKNOWNS * LANES] = {0};
   for (int i = 0; i < n; i++)
     for (int l = 0; l < m; l++)
       add_multiple(s->sign[l] * r[i * m + l], s->back[l], back + i * LANES);
@@ -264,16 +192,12 @@ WIDE static void stage_inverse_times(const dvi__stage_inverse *s, double *r)
     for (int l = 0; l < n; l++) add_multiple(s->Omega[l * n + i], back + l * LANES, (double *)sum);
     memcpy(x + i * m, sum, sizeof sum);
   }
-  for (int at = 0; at < s->stride; at += BLOCK) {
-    block sum = {0};
-    for (int c = 0; c < s->unknowns; c++)
-      sum += x[c] * *(const block *)(s->inverse + c * s->stride + at);
-    memcpy(y + at, &sum, sizeof sum);
-  }
-  memcpy(r, y, (size_t)s->unknowns * sizeof *r);
 }
 
 void dvi__stage_inverse_solve(dvi__stage_inverse *s, double *r)
 {
-  stage_inverse_times(s, r);
+  double x[MOST_UNKNOWNS + LANES];
+  turn_rows(s, r, x);
+  dvi__near_one_times(s->unknowns, s->inverse, x);
+  memcpy(r, x, (size_t)s->unknowns * sizeof *r);
 }
