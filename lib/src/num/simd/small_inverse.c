@@ -54,24 +54,74 @@ int dvi__near_one_stride(int n)
   return (n + BLOCK - 1) / BLOCK * BLOCK;
 }
 
-/* Invert the matrix of columns of `blocks` blocks (Gauss and Jordan), without exchanges. Returns 0
- * if a pivot is far from 1. */
+static const block unit[BLOCK] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
+
+/* Subtract a multiple of a column, and of another one unless it is NULL. */
+INLINE void subtract(const int blocks, const block *x, double factor, const block *other,
+                     double other_factor, block *y)
+{
+  for (int i = 0; i < blocks; i++) {
+    block sum = y[i] - factor * x[i];
+    if (other != NULL) sum -= other_factor * other[i];
+    y[i] = sum;
+  }
+}
+
+/* Divide column k by its pivot, and add the inverse of the pivot there. A multiple of the column
+ * then leaves -factor/pivot of the factor in row k. Returns 0 if the pivot is far from 1. */
+INLINE int divide_column(int k, const int blocks, block *column)
+{
+  const double pivot = ((const double *)column)[k], by = 1 / pivot;
+  if (!(pivot > least_pivot && pivot < largest_pivot)) return 0;
+  for (int i = 0; i < blocks; i++) column[i] *= by;
+  column[k / BLOCK] += by * unit[k % BLOCK];
+  return 1;
+}
+
+/* Leave the inverse of the pivot alone. */
+INLINE void settle_column(int k, block *column)
+{
+  column[k / BLOCK] -= unit[k % BLOCK];
+}
+
+/* Eliminate rows k and k + 1 from all columns, in one pass. */
+INLINE int eliminate_two(int n, int k, const int blocks, double *A)
+{
+  block *one = (block *)(A + k * blocks * BLOCK), *two = one + blocks;
+  if (!divide_column(k, blocks, one)) return 0;
+  subtract(blocks, one, ((const double *)two)[k], NULL, 0, two);
+  if (!divide_column(k + 1, blocks, two)) return 0;
+  const double both = ((const double *)one)[k + 1];
+  for (int j = 0; j < n; j++) {
+    block *y = (block *)(A + j * blocks * BLOCK);
+    const double factor = ((const double *)y)[k];
+    if (j == k || j == k + 1) continue;
+    subtract(blocks, one, factor, two, ((const double *)y)[k + 1] - factor * both, y);
+  }
+  settle_column(k, one);
+  subtract(blocks, two, both, NULL, 0, one);
+  settle_column(k + 1, two);
+  return 1;
+}
+
+INLINE int eliminate_last(int n, const int blocks, double *A)
+{
+  block *last = (block *)(A + (n - 1) * blocks * BLOCK);
+  if (!divide_column(n - 1, blocks, last)) return 0;
+  for (int j = 0; j < n - 1; j++) {
+    block *y = (block *)(A + j * blocks * BLOCK);
+    subtract(blocks, last, ((const double *)y)[n - 1], NULL, 0, y);
+  }
+  settle_column(n - 1, last);
+  return 1;
+}
+
+/* Invert the matrix of columns of `blocks` blocks. */
 INLINE int invert_near_one(int n, const int blocks, double *A)
 {
-  for (int k = 0; k < n; k++) {
-    double *column = A + k * blocks * BLOCK;
-    const double pivot = column[k], by = 1 / pivot;
-    if (!(pivot > least_pivot && pivot < largest_pivot)) return 0;
-    for (int i = 0; i < blocks; i++) ((block *)column)[i] *= by;
-    column[k] = 1 + by; /* leaves -factor * by of the factor in row k */
-    for (int j = 0; j < n; j++) {
-      double *other = A + j * blocks * BLOCK;
-      const double factor = j != k ? other[k] : 0;
-      for (int i = 0; i < blocks; i++) ((block *)other)[i] -= factor * ((const block *)column)[i];
-    }
-    column[k] = by;
-  }
-  return 1;
+  for (int k = 0; k + 1 < n; k += 2)
+    if (!eliminate_two(n, k, blocks, A)) return 0;
+  return n % 2 == 0 || eliminate_last(n, blocks, A);
 }
 
 WIDE static int near_one_invert(int n, double *A)

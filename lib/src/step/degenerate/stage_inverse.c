@@ -16,11 +16,13 @@ struct dvi__stage_inverse {
   int n, m, has_end, unknowns, stride;            /* a column has `stride` numbers, whole blocks */
   double moved[LANES][LANES], back[LANES][LANES]; /* G and G^-1 by columns */
   double sign[LANES];
-  double unit[LANES][LANES], inner[LANES]; /* the matrix 1; 1 for stages before the end */
-  double of_start[LANES], of_end[LANES];   /* G^-1 of 1 in all rows, and in the last one */
-  dvi__stage_entry *given, *turned;        /* [n*n] by columns: entries, and -Omega^-1 times them */
-  double *Omega;                           /* [n*n] -Omega^-1 by columns */
-  double *inverse;                         /* [stride*unknowns + LANES] by columns */
+  double path[LANES][LANES][LANES];               /* column l of G^-1 times row r of G, as [l][r] */
+  double unit[LANES][LANES], inner[LANES][LANES]; /* the matrix 1 and G, without rows of the end */
+  double of_start[LANES], of_end[LANES];          /* G^-1 of 1 in all rows, and in the last one */
+  double path_of_start[LANES][LANES], path_of_end[LANES][LANES]; /* the same times -G's last row */
+  dvi__stage_entry *given, *turned; /* [n*n] by columns: entries, and -Omega^-1 times them */
+  double *Omega;                    /* [n*n] -Omega^-1 by columns */
+  double *inverse;                  /* [stride*unknowns + LANES] by columns */
 };
 
 /* ---- create ---- */
@@ -36,14 +38,20 @@ static int stage_inverse_fill_tables(dvi__stage_inverse *s, const dvi__stage_tab
   for (int k = 0; k < m; k++) {
     const int is_end = s->has_end && k == m - 1;
     s->sign[k] = is_end ? -1 : 1;
-    s->inner[k] = !is_end;
-    s->unit[k][k] = 1;
+    s->unit[k][k] = !is_end;
+    for (int l = 0; l < m; l++) s->inner[l][k] = is_end ? 0 : s->moved[l][k];
     for (int l = 0; l < m; l++) {
       s->back[l][k] = packed[l * m + k];
       s->of_start[k] += packed[l * m + k];
     }
     s->of_end[k] = packed[(m - 1) * m + k];
   }
+  for (int l = 0; l < m; l++)
+    for (int k = 0; k < m; k++) {
+      for (int r = 0; r < m; r++) s->path[l][r][k] = s->back[r][k] * s->moved[l][r];
+      s->path_of_start[l][k] = -s->of_start[k] * s->moved[l][m - 1];
+      s->path_of_end[l][k] = -s->of_end[k] * s->moved[l][m - 1];
+    }
   return 1;
 }
 
@@ -115,42 +123,40 @@ INLINE void add_multiple(double by, const double *x, double *sum)
 }
 
 /* Multiply the entries by -Omega^-1. */
-INLINE void turn_entries(const dvi__stage_inverse *s)
+INLINE void turn_entry(const dvi__stage_inverse *s, int i, int j)
 {
   const int n = s->n;
-  memset(s->turned, 0, (size_t)(n * n) * sizeof *s->turned);
-  for (int j = 0; j < n; j++)
-    for (int l = 0; l < n; l++) {
-      const dvi__stage_entry *of = s->given + j * n + l;
-      for (int i = 0; i < n; i++) {
-        dvi__stage_entry *turned = s->turned + j * n + i;
-        const double by = s->Omega[l * n + i];
-        add_multiple(by, of->A, turned->A);
-        add_multiple(by, of->B, turned->B);
-        add_multiple(by, of->K, turned->K);
-        turned->a += by * of->a;
-        turned->c += by * of->c;
-      }
-    }
+  dvi__stage_entry sum = {.a = 0};
+  for (int l = 0; l < n; l++) {
+    const dvi__stage_entry *of = s->given + j * n + l;
+    const double by = s->Omega[l * n + i];
+    add_multiple(by, of->A, sum.A);
+    add_multiple(by, of->B, sum.B);
+    add_multiple(by, of->K, sum.K);
+    sum.a += by * of->a;
+    sum.c += by * of->c;
+  }
+  s->turned[j * n + i] = sum;
 }
 
-/* Write the rows of a component in the column of unknown l of another one, LANES numbers. */
+/* Write the rows of a component in column l of another one, LANES numbers. */
 INLINE void write_rows(const dvi__stage_inverse *s, const dvi__stage_entry *of, int l, double *rows)
 {
   const int m = s->m, last = m - 1;
-  const double *moved = s->moved[l];
   block sum[LANES / BLOCK] = {{0}, {0}};
-  for (int r = 0; r < m; r++) add_multiple(of->A[r] * moved[r], s->back[r], (double *)sum);
+  for (int r = 0; r < m; r++) add_multiple(of->A[r], s->path[l][r], (double *)sum);
   if (s->has_end) {
-    const double is_last = l == last;
-    add_multiple(-(is_last * of->a + of->c * moved[last]), s->of_start, (double *)sum);
-    add_multiple(-(is_last * of->B[last] + of->K[last] * moved[last]), s->of_end, (double *)sum);
+    add_multiple(of->c, s->path_of_start[l], (double *)sum);
+    add_multiple(of->K[last], s->path_of_end[l], (double *)sum);
   }
-  for (int k = 0; k < LANES; k += BLOCK) {
-    const block pushed = *(const block *)(of->K + k) * *(const block *)(moved + k) +
-                         *(const block *)(of->B + k) * *(const block *)(s->unit[l] + k);
-    *(block *)(rows + k) = sum[k / BLOCK] - pushed * *(const block *)(s->inner + k);
+  if (s->has_end && l == last) {
+    add_multiple(-of->a, s->of_start, (double *)sum);
+    add_multiple(-of->B[last], s->of_end, (double *)sum);
   }
+  for (int k = 0; k < LANES; k += BLOCK)
+    *(block *)(rows + k) = sum[k / BLOCK] -
+                           (*(const block *)(of->K + k) * *(const block *)(s->inner[l] + k) +
+                            *(const block *)(of->B + k) * *(const block *)(s->unit[l] + k));
 }
 
 /* Write the matrix. Lanes beyond the stages of a component are 0, and those of the next one, or of
@@ -166,7 +172,8 @@ INLINE void write_matrix(const dvi__stage_inverse *s)
 
 WIDE static void turn_and_write(const dvi__stage_inverse *s)
 {
-  turn_entries(s);
+  for (int j = 0; j < s->n; j++)
+    for (int i = 0; i < s->n; i++) turn_entry(s, i, j);
   write_matrix(s);
 }
 
@@ -183,10 +190,12 @@ int dvi__stage_inverse_begin(dvi__stage_inverse *s, int count, const double *wei
 WIDE static void turn_rows(const dvi__stage_inverse *s, const double *r, double *x)
 {
   const int m = s->m, n = s->n;
-  double back[MOST_UNKNOWNS * LANES] = {0};
-  for (int i = 0; i < n; i++)
-    for (int l = 0; l < m; l++)
-      add_multiple(s->sign[l] * r[i * m + l], s->back[l], back + i * LANES);
+  double back[MOST_UNKNOWNS * LANES];
+  for (int i = 0; i < n; i++) {
+    block sum[LANES / BLOCK] = {{0}, {0}};
+    for (int l = 0; l < m; l++) add_multiple(s->sign[l] * r[i * m + l], s->back[l], (double *)sum);
+    memcpy(back + i * LANES, sum, sizeof sum);
+  }
   for (int i = 0; i < n; i++) {
     block sum[LANES / BLOCK] = {{0}, {0}};
     for (int l = 0; l < n; l++) add_multiple(s->Omega[l * n + i], back + l * LANES, (double *)sum);
