@@ -20,6 +20,10 @@ enum { DVI__LENGTH, DVI__CARRIED };
 typedef struct dvi__step_kind {
   dvi_status (*residual)(void *of, const double *x, double *R);
   dvi_status (*jacobian)(void *of, const double *x, double *values);
+  /* The Jacobian in parts, as in dvi__equations; NULL if it is a matrix alone */
+  dvi_status (*invert)(void *of, const double *x, int *inverted);
+  void (*correct)(void *of, double *r);
+  void (*fill)(void *of, double *values);
   dvi_status (*row_scale)(void *of, double *scale, int *unchanged);
   void (*straight)(const void *of, const double *v, double *x);
   void (*continued)(void *of, double ratio, const double *last, double *x);
@@ -32,10 +36,6 @@ typedef struct dvi__step_kind {
   /* The time that passes in the step with the solution x, for kinds that accept time-transformed
    * systems. NULL selects h. */
   dvi_status (*duration)(void *of, const double *x, double *duration);
-  /* The Jacobian in parts, as in dvi__equations; NULL if it is a matrix alone */
-  dvi_status (*invert)(void *of, const double *x, int *inverted);
-  void (*correct)(void *of, double *r);
-  void (*fill)(void *of, double *values);
   /* Newton's method factors each Jacobian, because forces cost more than factors, and the step
    * corrects increments from the last point */
   int renewed;
