@@ -20,6 +20,10 @@ enum { DVI__LENGTH, DVI__CARRIED };
 typedef struct dvi__step_kind {
   dvi_status (*residual)(void *of, const double *x, double *R);
   dvi_status (*jacobian)(void *of, const double *x, double *values);
+  /* The Jacobian in parts, as in dvi__equations; NULL if it is a matrix alone */
+  dvi_status (*invert)(void *of, const double *x, int *inverted);
+  void (*correct)(void *of, double *r);
+  void (*fill)(void *of, double *values);
   dvi_status (*row_scale)(void *of, double *scale, int *unchanged);
   void (*straight)(const void *of, const double *v, double *x);
   void (*continued)(void *of, double ratio, const double *last, double *x);
@@ -39,10 +43,6 @@ typedef struct dvi__step_kind {
   dvi_status (*fixed_point_iterate)(void *of, double *change, double *largest);
   void (*fixed_point_end)(void *of, double *x);
   int fixed_point_frozen;
-  /* The Jacobian in parts, as in dvi__equations; NULL if it is a matrix alone */
-  dvi_status (*invert)(void *of, const double *x, int *inverted);
-  void (*correct)(void *of, double *r);
-  void (*fill)(void *of, double *values);
   /* Newton's method factors each Jacobian, because forces cost more than factors, and the step
    * corrects increments from the last point */
   int renewed;

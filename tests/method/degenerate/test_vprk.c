@@ -288,43 +288,6 @@ START_TEST(a_smooth_step_takes_a_jacobian_and_two_residuals)
 }
 END_TEST
 
-/* At usual steps the inverse of the linearised stages, which is near that of the two-form, takes
- * the place of a factor, for which nothing is prepared. Newton's method converges as fast. At very
- * long steps there are factors. */
-static const struct {
-  const char *problem, *setting, *method;
-  double h;
-  int inverts;
-} inverses[] = {
-    {"massless-particle", "gauge=singular", "vprk:nodes=4", 0.4, 1},
-    {"massless-particle", NULL, "vprk:nodes=6", 0.4, 1},
-    {"lotka-volterra", NULL, "vprk:nodes=3,projection=post", 0.2, 1},
-    {"lotka-volterra", NULL, "vprk:nodes=3,projection=midpoint", 0.2, 1},
-    {"lotka-volterra-4d", NULL, "vprk:nodes=4,projection=symplectic", 0.1, 1},
-    {"vortices", NULL, "vprk:nodes=5", 0.05, 1},
-    {"vortices", NULL, "vprk:nodes=5,projection=none", 0.05, 1},
-    {"tokamak", NULL, "vprk:nodes=3,tableau=lobatto-iiie", 800, 1},
-    {"vortices", NULL, "vprk:nodes=4", 1, 0},
-};
-enum { INVERSES = sizeof inverses / sizeof *inverses };
-
-START_TEST(usual_steps_need_no_factor)
-{
-  problem *model = create_problem(inverses[_i].problem, inverses[_i].setting);
-  dvi_integrator *integrator = start_integrator(model, inverses[_i].method);
-  dvi_counters before, counters;
-  const int steps = inverses[_i].inverts ? 20 : 1;
-  dvi_integrator_counters(integrator, &before);
-  for (int k = 0; k < steps; k++) (void)dvi_integrator_step(integrator, inverses[_i].h);
-  dvi_integrator_counters(integrator, &counters);
-  ck_assert_int_gt(counters.factorizations, 0);
-  ck_assert_int_eq(counters.preparations == before.preparations, inverses[_i].inverts);
-  if (inverses[_i].inverts) ck_assert_int_le(counters.residuals, 6 * steps);
-  dvi_integrator_destroy(&integrator);
-  problem_destroy(&model);
-}
-END_TEST
-
 START_TEST(lobatto_wants_two_nodes)
 {
   problem *model = create_problem("lotka-volterra", NULL);
@@ -350,6 +313,5 @@ SUITE(vprk)
   tcase_add_test(tests, loop_integrals_are_conserved_by_symplectic_maps_alone);
   tcase_add_test(tests, a_step_out_of_the_logarithms_domain_leaves_the_state);
   tcase_add_loop_test(tests, a_callback_that_goes_on_asking_for_smaller_steps_is_heard, 0, 6);
-  tcase_add_loop_test(tests, usual_steps_need_no_factor, 0, INVERSES);
   tcase_add_test(tests, lobatto_wants_two_nodes);
 }

@@ -6,6 +6,8 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "num/simd/wide.h"
+#include "num/simd/width.h"
 #include "step/degenerate/stage_inverse.h"
 #include "system/dynamics/one_form.h"
 
@@ -151,28 +153,65 @@ void dvi__partitioned_place(dvi__partitioned *p, double t0, double h, const doub
   p->q0 = q0;
   p->p0 = p0;
   p->carried = carried;
+  p->has_gradients = 0;
   for (int i = 0; i < p->s; i++) p->t[i] = t0 + p->c[i] * h;
 }
 
 /* ---- points ---- */
+
+/* Compute the product of a matrix, by columns, and x [s]. The stages are lanes. */
+INLINE void product_in_lanes(int s, const int lanes,
+                             double matrix[DVI__STAGES_MOST][DVI__STAGES_MOST], const double *x,
+                             double *y)
+{
+  double sum[DVI__STAGES_MOST] = {0};
+  for (int l = 0; l < s; l++)
+    for (int k = 0; k < lanes; k++) sum[k] += matrix[l][k] * x[l];
+  for (int k = 0; k < lanes; k++) y[k] = sum[k];
+}
+
+WIDE static void stage_product(int s, double matrix[DVI__STAGES_MOST][DVI__STAGES_MOST],
+                               const double *x, double *y)
+{
+  if (s <= DVI__STAGES_MOST / 2)
+    product_in_lanes(s, DVI__STAGES_MOST / 2, matrix, x, y);
+  else
+    product_in_lanes(s, DVI__STAGES_MOST, matrix, x, y);
+}
 
 /* Compute the points. The increments before the kicks are summed first, so that q0, the large
  * number, comes last. */
 void dvi__partitioned_points(dvi__partitioned *p, const double *x)
 {
   const kicks *kick = &p->kick;
-  const size_t s = (size_t)p->s;
-  for (size_t i = 0; i < (size_t)p->n; i++, x += p->m) {
-    const double lambda = kick->has_multiplier ? x[p->s] : 0;
+  const int s = p->s;
+  for (int i = 0; i < p->n; i++, x += p->m) {
+    const double lambda = kick->has_multiplier ? x[s] : 0;
+    double moved[DVI__STAGES_MOST], *Q = p->Q + i * s, *V = p->V + i * s;
+    stage_product(s, p->a_by_columns, x, moved);
     p->k0[i] = kick->before * lambda + kick->carried * p->carried[i];
     p->k1[i] = kick->after * lambda;
-    for (size_t k = 0; k < s; k++) p->V[i * s + k] = x[k] / p->h;
-    for (size_t k = 0; k < s; k++)
-      p->Q[i * s + k] = p->q0[i] + (p->k0[i] + partitioned_dot(p->s, p->a[k], x));
-    p->dq[i] = p->k0[i] + partitioned_dot(p->s, p->b, x) + p->k1[i];
+    for (int k = 0; k < s; k++) {
+      V[k] = x[k] / p->h;
+      Q[k] = p->q0[i] + (p->k0[i] + moved[k]);
+    }
+    p->dq[i] = p->k0[i] + partitioned_dot(s, p->b, x) + p->k1[i];
     p->q1[i] = p->q0[i] + p->dq[i];
     p->mean[i] = p->q0[i] + 0.5 * p->dq[i];
   }
+}
+
+/* Compute the effect on p of the kick k0, whose derivatives the Jacobian of this step may have
+ * left. */
+static dvi_status kick_at_start(dvi__partitioned *p)
+{
+  const dvi__pattern *qv = &p->system->qv;
+  if (!p->has_gradients)
+    return dvi__form_gradient(p->evaluator, p->kick.at_mean ? p->mean : p->q0, p->k0, p->K0,
+                              p->unwanted);
+  for (int j = 0; j < p->n; j++)
+    for (int e = qv->start[j]; e < qv->start[j + 1]; e++) p->K0[qv->row[e]] += p->k0[j] * p->qv0[e];
+  return DVI_OK;
 }
 
 /* Compute K0 and K1 where there are kicks, and alpha(q1). */
@@ -183,9 +222,7 @@ static dvi_status partitioned_ends(dvi__partitioned *p)
   memset(p->K0, 0, bytes);
   memset(p->K1, 0, bytes);
   if (!kick->has_multiplier) return DVI_OK;
-  if (kick->before != 0 || kick->carried != 0)
-    DVI_TRY(dvi__form_gradient(p->evaluator, kick->at_mean ? p->mean : p->q0, p->k0, p->K0,
-                               p->unwanted));
+  if (kick->before != 0 || kick->carried != 0) DVI_TRY(kick_at_start(p));
   DVI_TRY(dvi__form_gradient(p->evaluator, p->q1, p->k1, p->K1, p->alpha1));
   return kick->at_mean ? dvi__form_gradient(p->evaluator, p->mean, p->k1, p->K1, p->unwanted)
                        : DVI_OK;
@@ -193,15 +230,16 @@ static dvi_status partitioned_ends(dvi__partitioned *p)
 
 dvi_status dvi__partitioned_residual(dvi__partitioned *p, const double *x, double *R)
 {
-  const size_t s = (size_t)p->s, m = (size_t)p->m;
+  const int s = p->s, m = p->m;
   dvi__partitioned_points(p, x);
-  DVI_TRY(dvi__lagrangian_gradient(p->evaluator, p->s, p->t, p->Q, p->V, p->L_q, p->L_v));
+  DVI_TRY(dvi__lagrangian_gradient(p->evaluator, s, p->t, p->Q, p->V, p->L_q, p->L_v));
   DVI_TRY(partitioned_ends(p));
-  for (size_t i = 0; i < (size_t)p->n; i++) {
+  for (int i = 0; i < p->n; i++) {
     const double *F = p->L_q + i * s, *alpha = p->L_v + i * s;
-    for (size_t k = 0; k < s; k++)
-      R[i * m + k] = (alpha[k] - p->p0[i]) - p->K0[i] - p->h * partitioned_dot(p->s, p->abar[k], F);
-    p->dp[i] = p->K0[i] + p->h * partitioned_dot(p->s, p->b, F) + p->K1[i];
+    double pushed[DVI__STAGES_MOST];
+    stage_product(s, p->abar_by_columns, F, pushed);
+    for (int k = 0; k < s; k++) R[i * m + k] = (alpha[k] - p->p0[i]) - p->K0[i] - p->h * pushed[k];
+    p->dp[i] = p->K0[i] + p->h * partitioned_dot(s, p->b, F) + p->K1[i];
     if (p->kick.has_multiplier) R[i * m + s] = (p->p0[i] - p->alpha1[i]) + p->dp[i];
   }
   return DVI_OK;

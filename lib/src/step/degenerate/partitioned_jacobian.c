@@ -22,6 +22,7 @@ static dvi_status hessians_at_ends(dvi__partitioned *p)
 {
   if (!p->kick.has_multiplier) return DVI_OK;
   DVI_TRY(dvi__form_hessian(p->evaluator, place_of_k0(p), p->k0, p->qq0, p->qv0));
+  p->has_gradients = !p->kick.at_mean;
   DVI_TRY(dvi__form_hessian(p->evaluator, place_of_k1(p), p->k1, p->qq1, p->qv1));
   if (p->kick.at_mean) return dvi__form_hessian(p->evaluator, p->q1, p->k1, p->qq_end, p->qv_end);
   memcpy(p->qv_end, p->qv1, (size_t)dvi__pattern_entries(&p->system->qv) * sizeof(double));

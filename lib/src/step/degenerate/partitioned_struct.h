@@ -31,6 +31,7 @@ struct dvi__partitioned {
   /* The current step. */
   double t0, h;
   const double *q0, *p0, *carried;
+  int has_gradients; /* qv0 has the gradients of alpha at q0 */
   /* Values at the stages, component by component [n*s]. */
   double *t, *Q, *V, *L_q, *L_v, *H_qq, *H_qv, *H_vv;
   /* Values at the ends, [n] each. These are the kicks, their effect on p, the increments of q
