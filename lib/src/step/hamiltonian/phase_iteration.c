@@ -79,10 +79,8 @@ static size_t lay_out(const dvi__phase_element *f, dvi__phase_iteration *own, do
   own->end_slope = take(numbers, &used, entries);
   own->base = take(numbers, &used, z * lanes);
   own->there = take(numbers, &used, z * lanes);
-  own->moments = take(numbers, &used, m * k * 2 * m * k);
-  own->end = take(numbers, &used, m * 2 * m);
-  own->moments_inverse = take(numbers, &used, m * k * m * k);
-  own->end_inverse = take(numbers, &used, m * m);
+  own->moments = take(numbers, &used, m * k * m * k);
+  own->end = take(numbers, &used, m * m);
   own->multiplier = take(numbers, &used, m * (k + 1));
   return used;
 }
@@ -161,7 +159,7 @@ static dvi_status set_residual(dvi__phase_element *f)
 void dvi__phase_element_begin(dvi__phase_element *f, const double *x)
 {
   dvi__phase_iteration *own = &f->iteration;
-  own->is_frozen = 0;
+  own->is_frozen = own->count = 0;
   for (int c = 0; c < 2 * f->n; c++, x += f->d + 1) {
     for (int i = 0; i < own->lanes; i++) own->W[c * own->lanes + i] = i < f->d ? x[i] : 0;
     own->D[c] = x[f->d];
@@ -245,11 +243,16 @@ static void correct(dvi__phase_element *f, double *change, double *whole)
   *change = q.not_finite + p.not_finite == 0 ? larger(q.change, weight * p.change) : HUGE_VAL;
 }
 
+/* A correction of more than this part of the unknowns leaves its matrices so far behind that new
+ * ones save more iterations than they cost. */
+static const double near_guess = 1e-2;
+
 dvi_status dvi__phase_element_iterate(dvi__phase_element *f, double *change, double *whole)
 {
   DVI_TRY(set_residual(f));
   if (!f->iteration.is_frozen) DVI_TRY(dvi__phase_freeze(f));
   dvi__phase_correct(f);
   correct(f, change, whole);
+  f->iteration.is_frozen = ++f->iteration.count > 1 || *change <= near_guess * *whole;
   return DVI_OK;
 }
