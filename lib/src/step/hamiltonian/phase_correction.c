@@ -9,7 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "step/hamiltonian/phase_rows.h"
+#include "step/hamiltonian/rows.h"
 #include "step/hamiltonian/phase_struct.h"
 #include "core/status.h"
 #include "num/simd/wide.h"
@@ -48,8 +48,7 @@ INLINE void fill_moments(const dvi__phase_element *f, const dvi__phase_iteration
     for (int a = 0; a < m; a++) {
       derivative_along(z, lanes, own->gradient + a * z * lanes, moved, dot);
       for (int l = 0; l < k; l++)
-        own->moments[(a * k + l) * 2 * m * k + b] = sum_of_products(d, own->moment + l * lanes,
-                                                                    dot);
+        own->moments[(a * k + l) * m * k + b] = sum_of_products(d, own->moment + l * lanes, dot);
     }
   }
 }
@@ -68,14 +67,14 @@ static void fill_end(const dvi__phase_element *f, const dvi__phase_iteration *ow
   const int z = 2 * f->n, m = f->m;
   for (int a = 0; a < m; a++)
     for (int b = 0; b < m; b++)
-      own->end[a * 2 * m + b] = 0.5 * sum_of_products(z, own->end_gradient + a * z,
-                                                      own->end_field + b * z);
+      own->end[a * m + b] = 0.5 *
+                            sum_of_products(z, own->end_gradient + a * z, own->end_field + b * z);
 }
 
-/* Exchange two rows of numbers. */
-static void exchange(int count, double *x, double *y)
+/* Exchange `count` numbers of x and y, which are `stride` apart. */
+INLINE void exchange(int count, int stride, double *x, double *y)
 {
-  for (int i = 0; i < count; i++) {
+  for (int i = 0; i < count * stride; i += stride) {
     const double kept = x[i];
     x[i] = y[i];
     y[i] = kept;
@@ -83,40 +82,49 @@ static void exchange(int count, double *x, double *y)
 }
 
 /* Give the row from k on with the largest number in column k. */
-static int row_of_pivot(int n, int width, int k, const double *rows)
+INLINE int row_of_pivot(int n, int k, const double *a)
 {
   int at = k;
   for (int i = k + 1; i < n; i++)
-    if (fabs(rows[i * width + k]) > fabs(rows[at * width + k])) at = i;
+    if (fabs(a[i * n + k]) > fabs(a[at * n + k])) at = i;
   return at;
 }
 
-WIDE static void subtract_row(int count, double factor, const double *restrict x,
-                              double *restrict y)
+INLINE void subtract_row(int count, double factor, const double *x, double *y)
 {
-  for (int i = 0; i < count; i++) y[i] -= factor * x[i];
+  int i = 0;
+  for (; i + BLOCK <= count; i += BLOCK) {
+    block row, from;
+    memcpy(&row, x + i, sizeof row);
+    memcpy(&from, y + i, sizeof from);
+    from -= factor * row;
+    memcpy(y + i, &from, sizeof from);
+  }
+  for (; i < count; i++) y[i] -= factor * x[i];
 }
 
-/* Write the inverse of the matrix in the first columns of rows [n][2n] by Gauss and Jordan, with
- * exchanges of rows. A product with an inverse of a few rows costs less than a solution. */
-static dvi_status invert(int n, double *rows, double *inverse)
+/* Replace a matrix by its inverse, by Gauss and Jordan in place, with exchanges of rows. Returns 0
+ * if it has none. A product with an inverse of a few rows costs less than a solution. */
+WIDE static int invert(int n, double *a)
 {
-  const int width = 2 * n;
-  for (int i = 0; i < n; i++)
-    for (int j = 0; j < n; j++) rows[i * width + n + j] = i == j;
+  int pivot[DVI__PHASE_ROWS_MOST] = {0};
   for (int k = 0; k < n; k++) {
-    double *row = rows + k * width;
-    exchange(width, row, rows + row_of_pivot(n, width, k, rows) * width);
-    if (!(fabs(row[k]) > 0))
-      return dvi__fail(DVI_NOT_CONVERGED, "a frozen matrix cannot be inverted");
-    const double inverse_pivot = 1 / row[k];
-    for (int j = 0; j < width; j++) row[j] *= inverse_pivot;
-    for (int i = 0; i < n; i++)
-      if (i != k) subtract_row(width, rows[i * width + k], row, rows + i * width);
+    double *row = a + k * n;
+    pivot[k] = row_of_pivot(n, k, a);
+    exchange(n, 1, row, a + pivot[k] * n);
+    if (!(fabs(row[k]) > 0)) return 0;
+    const double inverse = 1 / row[k];
+    for (int j = 0; j < n; j++) row[j] *= inverse;
+    row[k] = inverse;
+    for (int i = 0; i < n; i++) {
+      const double factor = a[i * n + k];
+      if (i == k) continue;
+      subtract_row(n, factor, row, a + i * n);
+      a[i * n + k] = -factor * inverse;
+    }
   }
-  for (int i = 0; i < n; i++)
-    memcpy(inverse + i * n, rows + i * width + n, (size_t)n * sizeof *inverse);
-  return DVI_OK;
+  for (int k = n - 1; k >= 0; k--) exchange(n, n, a + k, a + pivot[k]);
+  return 1;
 }
 
 dvi_status dvi__phase_freeze(dvi__phase_element *f)
@@ -136,8 +144,8 @@ dvi_status dvi__phase_freeze(dvi__phase_element *f)
   spread_gradients(f, f->phi_z + f->d * gradients, 1, own->end_gradient, own->end_field);
   fill_end(f, own);
   if (f->k > 0) fill_moments_of(f);
-  DVI_TRY(invert(f->m, own->end, own->end_inverse));
-  DVI_TRY(invert(f->m * f->k, own->moments, own->moments_inverse));
+  if (!invert(f->m, own->end) || !invert(f->m * f->k, own->moments))
+    return dvi__fail(DVI_NOT_CONVERGED, "a frozen matrix cannot be inverted");
   own->is_frozen = 1;
   return DVI_OK;
 }
@@ -145,10 +153,10 @@ dvi_status dvi__phase_freeze(dvi__phase_element *f)
 /* ---- corrections ---- */
 
 /* Set base to r_W + S there, where `there` is A dW. */
-INLINE void set_base(const dvi__phase_iteration *own, int z, int lanes, int sweep)
+INLINE void set_base(const dvi__phase_iteration *own, int z, int lanes)
 {
-  memcpy(own->base, own->of_W, (size_t)(z * lanes) * sizeof(double));
-  for (int e = 0; sweep > 0 && e < own->entries; e++)
+  for (int i = 0; i < z * lanes; i += BLOCK) memcpy(own->base + i, own->of_W + i, sizeof(block));
+  for (int e = 0; e < own->entries; e++)
     add_row(lanes, own->slope + e * lanes, own->there + own->column[e] * lanes,
             own->base + own->row[e] * lanes);
 }
@@ -166,7 +174,7 @@ INLINE void set_multipliers(const dvi__phase_element *f, const dvi__phase_iterat
                         sum_of_products(f->d, own->moment + l * lanes, dot);
   }
   for (int b = 0; b < count; b++)
-    own->multiplier[b] = sum_of_products(count, own->moments_inverse + b * count, left);
+    own->multiplier[b] = sum_of_products(count, own->moments + b * count, left);
 }
 
 /* Replace the residual of W and that of the moments by their corrections. */
@@ -174,9 +182,10 @@ INLINE void correct_stages(const dvi__phase_element *f, const dvi__phase_iterati
 {
   const int z = 2 * f->n, k = f->k, count = f->m * k;
   for (int sweep = 0; sweep <= SWEEPS; sweep++) {
-    set_base(own, z, lanes, sweep);
+    if (sweep > 0) set_base(own, z, lanes);
+    const double *base = sweep > 0 ? own->base : own->of_W;
     for (int c = 0; c < z; c++)
-      row_product(f->d, lanes, own->a, own->base + c * lanes, own->there + c * lanes);
+      row_product(f->d, lanes, own->a, base + c * lanes, own->there + c * lanes);
     if (k == 0) continue;
     set_multipliers(f, own, lanes);
     for (int c = 0; sweep < SWEEPS && c < z; c++)
@@ -217,7 +226,7 @@ static void correct_end(const dvi__phase_element *f)
       left[a] = own.of_end[a] - sum_of_products(z, own.end_gradient + a * z, base);
     for (int c = 0; c < z; c++) D[c] = base[c];
     for (int a = 0; a < m; a++) {
-      const double half = 0.5 * sum_of_products(m, own.end_inverse + a * m, left);
+      const double half = 0.5 * sum_of_products(m, own.end + a * m, left);
       own.multiplier[a] = 2 * half;
       for (int c = 0; c < z; c++) D[c] += half * own.end_field[a * z + c];
     }

@@ -69,7 +69,7 @@ void dvi__phase_element_sizes(const dvi__phase_element *phase, const double *x, 
 /* Write x for a start with q' = v [n]. dvi__phase_element_continue continues the x of the last
  * step, with ratio = h_next / h_last. */
 void dvi__phase_element_straight(const dvi__phase_element *phase, const double *v, double *x);
-void dvi__phase_element_continue(const dvi__phase_element *phase, double ratio, const double *last,
+void dvi__phase_element_continue(dvi__phase_element *phase, double ratio, const double *last,
                                  double *x);
 
 #endif
