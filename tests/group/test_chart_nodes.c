@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "group/chart_bends.h"
 #include "group/chart_nodes.h"
 #include "group/stumpff.h"
 #include "group/vector.h"
@@ -106,6 +107,105 @@ START_TEST(nodes_are_points)
 }
 END_TEST
 
+/* Second derivatives at the nodes of a path. */
+typedef struct bends {
+  double T[27 * NODES], S[27 * NODES], turned[2][27 * NODES], in_xi[9 * NODES], mixed[9 * NODES],
+      C[2][9 * NODES];
+} bends;
+
+static const double W[] = {0.3, -0.7, 0.2, 0.5, 0.9, -0.4, -0.1, 0.6, 0.8};
+
+static void bend_path(const path *p, bends *b)
+{
+  memset(b, 0, sizeof *b);
+  dvi__chart_bend_nodes(&p->chart, &p->nodes, p->chart.kind >= DVI__SPHERE ? W : NULL,
+                        &(dvi__chart_bends){.stride = NODES,
+                                            .T = b->T,
+                                            .S = b->S,
+                                            .in_xi = b->in_xi,
+                                            .mixed = b->mixed,
+                                            .turned_T = b->turned[0],
+                                            .turned_S = b->turned[1],
+                                            .C_xi = b->C[0],
+                                            .C_rate = b->C[1]});
+}
+
+START_TEST(second_derivatives_are_those_of_points)
+{
+  for (int count = 1; count <= NODES; count++) {
+    path p;
+    bends b;
+    set_path(_i, count, &p);
+    bend_path(&p, &b);
+    for (int k = 0; k < count; k++) {
+      double T[27], S[27], in_xi[9], mixed[9];
+      place at;
+      set_place(&p, k, &at);
+      dvi__chart_tangents(&p.chart, &at.functions, at.xi, at.rate, T, S);
+      dvi__chart_curvature(&p.chart, &at.functions, at.xi, at.rate, at.a, at.b, in_xi, mixed);
+      check_node(p.stored * p.size, NODES, k, b.T, T);
+      check_node(p.stored * p.size, NODES, k, b.S, S);
+      check_node(p.size * p.size, count, k, b.in_xi, in_xi);
+      check_node(p.size * p.size, count, k, b.mixed, mixed);
+    }
+  }
+}
+END_TEST
+
+/* Give column j of tangents at node k. */
+static void get_column(const path *p, int k, int j, const double *tangents, double *column)
+{
+  for (int i = 0; i < p->stored; i++) column[i] = tangents[(i * p->size + j) * NODES + k];
+}
+
+/* Column j of turned_T has the moment of a covector as its product: a.(W_j x y) = W_j.(y x a). */
+START_TEST(turned_tangents_have_the_moments)
+{
+  path p;
+  bends b;
+  set_path(_i, 5, &p);
+  bend_path(&p, &b);
+  for (int k = 0; k < p.count; k++)
+    for (int j = 0; j < p.size; j++) {
+      double N[2][3] = {{0}}, turned[2][9], sum[2] = {0};
+      place at;
+      set_place(&p, k, &at);
+      dvi__chart_add_moment(p.chart.kind, at.y, at.a, N[0]);
+      dvi__chart_add_moment(p.chart.kind, at.v, at.a, N[1]);
+      for (int which = 0; which < 2; which++) {
+        get_column(&p, k, j, b.turned[which], turned[which]);
+        for (int i = 0; i < p.stored; i++) sum[which] += at.a[i] * turned[which][i];
+        ck_assert_double_le(fabs(sum[which] - dvi__dot(W + 3 * j, N[which])), 1e-13);
+      }
+    }
+}
+END_TEST
+
+START_TEST(changes_of_moments_are_those_of_tangents)
+{
+  path p;
+  bends b;
+  set_path(_i, 5, &p);
+  bend_path(&p, &b);
+  for (int k = 0; k < p.count; k++)
+    for (int j = 0; j < p.size; j++) {
+      double N[2][3] = {{0}}, T[9], S[9];
+      place at;
+      set_place(&p, k, &at);
+      get_column(&p, k, j, b.T, T);
+      get_column(&p, k, j, b.S, S);
+      dvi__chart_add_moment(p.chart.kind, T, at.a, N[0]);
+      dvi__chart_add_moment(p.chart.kind, S, at.b, N[0]);
+      dvi__chart_add_moment(p.chart.kind, T, at.b, N[1]);
+      for (int which = 0; which < 2; which++)
+        for (int i = 0; i < p.size; i++)
+          ck_assert_double_le(
+              fabs(b.C[which][(i * p.size + j) * p.count + k] - dvi__dot(W + 3 * i, N[which])),
+              1e-13);
+    }
+}
+END_TEST
+
 /* Masses of the vectors of a rotation, and its J. */
 static const double mass[] = {0.7, 0.9, 1.2}, inertia[] = {2.1, 0, 0, 0, 1.9, 0, 0, 0, 1.6};
 
@@ -197,6 +297,9 @@ SUITE(chart_nodes)
   tcase_add_loop_test(tests, nodes_are_points, 0, KINDS);
   tcase_add_loop_test(tests, even_masses_are_masses, 0, KINDS);
   tcase_add_loop_test(tests, moments_are_those_of_points, DVI__SPHERE, KINDS);
+  tcase_add_loop_test(tests, second_derivatives_are_those_of_points, 0, KINDS);
+  tcase_add_loop_test(tests, turned_tangents_have_the_moments, DVI__SPHERE, KINDS);
+  tcase_add_loop_test(tests, changes_of_moments_are_those_of_tangents, DVI__SPHERE, KINDS);
   tcase_add_loop_test(tests, nodes_do_not_depend_on_their_neighbours, 0, KINDS);
   tcase_add_test(tests, nodes_beyond_half_a_turn_are_refused);
   tcase_add_test(tests, functions_side_by_side_have_the_digits_of_each);

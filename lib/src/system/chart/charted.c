@@ -6,7 +6,6 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "group/chart_nodes.h"
 
 /* ---- create, destroy ---- */
 
@@ -60,8 +59,9 @@ static dvi_status charted_allocate(dvi__charted *x)
   x->L_yy = DVI_NEW(double, (size_t)dvi__pattern_entries(&x->base->qq) * DVI__GROUP);
   x->T = DVI_NEW(double, 3 * group);
   x->S = DVI_NEW(double, 3 * group);
+  x->slot_blocks = DVI_NEW(double, 4 * 9 * DVI__GROUP);
   if (x->chart && x->functions && x->stumpff && x->t && x->y && x->rate && x->L_y && x->w &&
-      x->L_yy && x->T && x->S)
+      x->L_yy && x->T && x->S && x->slot_blocks)
     return DVI_OK;
   return dvi__fail(DVI_NO_MEMORY, "charts: no memory for %zu factors", slots);
 }
@@ -104,12 +104,13 @@ void dvi__charted_destroy(dvi__charted **charted)
   dvi__charted_clear_rows(x);
   dvi__charted_clear_force(x);
   dvi__charted_clear_blocks(x);
-  void *const own[] = {
-      x->functions, x->chart,      x->slot,   x->slot_of_x, x->t,      x->y,         x->rate,
-      x->L_y,       x->w,          x->L_yy,   x->T,         x->S,      x->own_in_qq, x->own_in_qv,
-      x->own_in_vv, x->coupled_in, x->W,      x->end,       x->moment, x->impulse,   x->turned_T,
-      x->turned_S,  x->C_q1,       x->C_qq,   x->C_qv,      x->kick,   x->first,     x->width,
-      x->inertia,   x->own_mass,   x->stumpff};
+  void *const own[] = {x->functions,   x->chart,    x->slot,      x->slot_of_x, x->t,
+                       x->y,           x->rate,     x->L_y,       x->w,         x->L_yy,
+                       x->T,           x->S,        x->own_in_qq, x->own_in_qv, x->own_in_vv,
+                       x->coupled_in,  x->W,        x->end,       x->moment,    x->impulse,
+                       x->turned_T,    x->turned_S, x->C_q1,      x->C_qq,      x->C_qv,
+                       x->kick,        x->first,    x->width,     x->inertia,   x->own_mass,
+                       x->slot_blocks, x->stumpff};
   for (size_t i = 0; i < sizeof own / sizeof *own; i++) dvi__release(own[i]);
   dvi__release(x);
   *charted = NULL;

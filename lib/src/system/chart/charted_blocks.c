@@ -210,7 +210,7 @@ INLINE void add_masses(const dvi__charted *x, const points *p, int on_path, cons
   for (const dvi__slot_block *block = x->masses.block, *end = block + x->masses.count; block < end;
        block++) {
     const int bends = !is_line(x, block->row),
-              turns = on_path && dvi__turns(&x->base->slots[block->row]);
+              turns = on_path && x->inertia == NULL && dvi__turns(&x->base->slots[block->row]);
     lane P[27];
     multiply_mass(x, block, x->T, p, P);
     add_product(x, block, block->vv, x->T, P, p, to->vv);

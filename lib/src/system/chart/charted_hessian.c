@@ -7,41 +7,46 @@
 #include <string.h>
 
 #include "core/status.h"
+#include "group/chart_bends.h"
 
-/* Copy a slot's tangents at point k of a group. */
-static void put_tangents(const dvi__factor_slot *slot, int k, const double *tangents, double *all)
+/* Add a slot's matrix at a group of points, whose number i of point k is [i*group + k]. */
+static void add_slot_block(const dvi__place *at, int size, int group, const double *matrix,
+                           size_t count, size_t first, double *values)
 {
-  const int numbers = dvi__chart_stored(slot->kind) * dvi__chart_size(slot->kind);
-  double *to = all + 3 * (size_t)slot->q * DVI__GROUP + (size_t)k;
-  for (int i = 0; i < numbers; i++) to[i * DVI__GROUP] = tangents[i];
+  for (int a = 0; a < size; a++)
+    for (int b = 0; b < size; b++, matrix += group) {
+      double *to = values + (size_t)(at->first + b * at->column + a) * count + first;
+      for (int k = 0; k < group; k++) to[k] += matrix[k];
+    }
 }
 
-void dvi__charted_put_tangents(const dvi__charted *x, int c, int k, const double *tangents,
-                               double *all)
-{
-  put_tangents(&x->base->slots[c], k, tangents, all);
-}
-
-/* Compute T and S of slot c at a point, and add the curvature of the chart. */
-static void bend_chart(dvi__charted *x, int c, const dvi__group_point *at, const double *xi,
-                       const double *rate, int on_path, const dvi__hessian *to)
+/* Compute T and S of slot c at a group of points, and add the curvature of the chart. On a path do
+ * so for the change of its moments. */
+static void bend_chart(dvi__charted *x, int c, const dvi__chart_nodes *nodes, int first,
+                       int on_path, const dvi__hessian *to)
 {
   const dvi__factor_slot *slot = &x->base->slots[c];
-  const size_t count = (size_t)at->count, point = (size_t)at->first + (size_t)at->k;
-  double here[3], u[3], a[DVI__CHART_POINT], b[DVI__CHART_POINT], T[3 * DVI__CHART_POINT],
-      S[3 * DVI__CHART_POINT], curved[9], mixed[9];
-  dvi__functions functions;
-  dvi__charted_gather(slot, at->count, at->first + at->k, xi, here);
-  dvi__charted_gather(slot, at->count, at->first + at->k, rate, u);
-  dvi__chart_functions(slot->kind, here, &functions);
-  dvi__chart_tangents(&x->chart[c], &functions, here, u, T, S);
-  put_tangents(slot, at->k, T, x->T);
-  put_tangents(slot, at->k, S, x->S);
+  const dvi__place *in_qq = &x->own_in_qq[c], *in_qv = &x->own_in_qv[c];
+  const int size = dvi__chart_size(slot->kind), group = nodes->count,
+            turns = on_path && dvi__turns(slot);
+  const size_t row = 3 * (size_t)slot->q * DVI__GROUP, count = nodes->local, at = (size_t)first;
+  const dvi__chart_bends bends = {.stride = DVI__GROUP,
+                                  .even = x->inertia != NULL,
+                                  .T = x->T + row,
+                                  .S = x->S + row,
+                                  .in_xi = x->slot_blocks,
+                                  .mixed = x->slot_blocks + 9 * DVI__GROUP,
+                                  .turned_T = turns ? x->turned_T + row : NULL,
+                                  .turned_S = turns ? x->turned_S + row : NULL,
+                                  .C_xi = x->slot_blocks + 18 * DVI__GROUP,
+                                  .C_rate = x->slot_blocks + 27 * DVI__GROUP};
+  dvi__chart_bend_nodes(&x->chart[c], nodes, turns ? x->W + 9 * c : NULL, &bends);
   if (slot->kind == DVI__LINE) return;
-  dvi__charted_pair(slot, at->group, at->k, x->L_y, x->w, a, b);
-  dvi__chart_curvature(&x->chart[c], &functions, here, u, a, b, curved, mixed);
-  dvi__charted_add_own_blocks(x, c, curved, mixed, count, point, to->qq, to->qv);
-  if (on_path && dvi__turns(slot)) dvi__charted_add_moment_changes(x, c, at, T, S);
+  add_slot_block(in_qq, size, group, bends.in_xi, count, at, to->qq);
+  add_slot_block(in_qv, size, group, bends.mixed, count, at, to->qv);
+  if (!turns) return;
+  add_slot_block(in_qq, size, group, bends.C_xi, count, at, x->C_qq);
+  if (!bends.even) add_slot_block(in_qv, size, group, bends.C_rate, count, at, x->C_qv);
 }
 
 void dvi__charted_add_entry(const dvi__place *at, int rows, int columns, double entry,
@@ -76,9 +81,10 @@ static dvi_status hessian_group(dvi__charted *x, int count, int first, int group
   const int on_path = dvi__charted_on_path(x, count);
   DVI_TRY(dvi__charted_forces(x, count, first, group, t, xi, rate));
   DVI_TRY(dvi__lagrangian_hessian(x->evaluator, group, x->t, x->y, x->rate, x->L_yy, NULL, NULL));
-  for (int c = 0; c < x->base->slot_count; c++)
-    for (int k = 0; k < group; k++)
-      bend_chart(x, c, &(dvi__group_point){count, first, group, k}, xi, rate, on_path, to);
+  for (int c = 0; c < x->base->slot_count; c++) {
+    const dvi__chart_nodes nodes = dvi__charted_nodes(x, c, count, first, group, xi, rate);
+    bend_chart(x, c, &nodes, first, on_path, to);
+  }
   dvi__charted_add_blocks(x, count, first, group, on_path, to);
   if (on_path) dvi__charted_find_moments(x, first, group);
   return DVI_OK;
@@ -94,11 +100,13 @@ void dvi__charted_mass(dvi__charted *x, double *mass)
   static const double rest[DVI__CHART_SIZE] = {0};
   clear_hessian(&x->vv, 1, mass);
   for (int c = 0; c < x->base->slot_count; c++) {
+    const dvi__factor_slot *slot = &x->base->slots[c];
+    const int numbers = dvi__chart_stored(slot->kind) * dvi__chart_size(slot->kind);
     double T[3 * DVI__CHART_POINT], S[3 * DVI__CHART_POINT];
     dvi__functions functions;
     dvi__chart_functions(x->chart[c].kind, rest, &functions);
     dvi__chart_tangents(&x->chart[c], &functions, rest, rest, T, S);
-    put_tangents(&x->base->slots[c], 0, T, x->T);
+    for (int i = 0; i < numbers; i++) x->T[(3 * (size_t)slot->q + (size_t)i) * DVI__GROUP] = T[i];
   }
   dvi__charted_add_mass(x, mass);
 }

@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "core/status.h"
-#include "group/chart_nodes.h"
 
 /* A callback of the new system can only return a number. The status itself is kept, with its
  * sentence. */
@@ -26,9 +25,8 @@ void dvi__charted_gather(const dvi__factor_slot *slot, int count, int k, const d
     one[i] = batch[(size_t)(slot->x + i) * (size_t)count + (size_t)k];
 }
 
-/* Give the numbers of slot c at a group of points that begins at point `first` of a batch. */
-static dvi__chart_nodes nodes_of(const dvi__charted *x, int c, int count, int first, int group,
-                                 const double *xi, const double *rate)
+dvi__chart_nodes dvi__charted_nodes(const dvi__charted *x, int c, int count, int first, int group,
+                                    const double *xi, const double *rate)
 {
   const dvi__factor_slot *slot = &x->base->slots[c];
   const size_t local = (size_t)slot->x * (size_t)count + (size_t)first,
@@ -49,7 +47,7 @@ static dvi_status find_points(dvi__charted *x, int count, int first, int group, 
                               const double *xi, const double *rate)
 {
   for (int c = 0; c < x->base->slot_count; c++) {
-    const dvi__chart_nodes nodes = nodes_of(x, c, count, first, group, xi, rate);
+    const dvi__chart_nodes nodes = dvi__charted_nodes(x, c, count, first, group, xi, rate);
     const double beyond = dvi__chart_place_nodes(&x->chart[c], &nodes);
     if (beyond != 0) return dvi__charted_too_large(beyond);
   }
@@ -84,20 +82,11 @@ dvi_status dvi__charted_forces(dvi__charted *x, int count, int first, int group,
   return dvi__lagrangian_gradient(x->evaluator, group, x->t, x->y, x->rate, x->L_y, x->w);
 }
 
-void dvi__charted_pair(const dvi__factor_slot *slot, int group, int k, const double *first,
-                       const double *second, double *a, double *b)
-{
-  for (int i = 0; i < dvi__chart_stored(slot->kind); i++) {
-    a[i] = first[(slot->q + i) * group + k];
-    b[i] = second[(slot->q + i) * group + k];
-  }
-}
-
 /* Compute N at the nodes of a group. Masses that couple no factors have no moment. */
 void dvi__charted_find_moments(dvi__charted *x, int first, int group)
 {
   for (int c = 0; c < x->base->slot_count; c++) {
-    const dvi__chart_nodes nodes = nodes_of(x, c, 0, 0, group, NULL, NULL);
+    const dvi__chart_nodes nodes = dvi__charted_nodes(x, c, 0, 0, group, NULL, NULL);
     if (dvi__turns(&x->base->slots[c]))
       dvi__chart_moments_of_nodes(&x->chart[c], x->inertia != NULL ? NULL : x->own_mass + 3 * c,
                                   &nodes, (size_t)x->capacity,
@@ -115,7 +104,7 @@ static dvi_status gradient_of_group(dvi__charted *x, int count, int first, int g
                                    apart ? NULL : x->w));
   for (int c = 0; c < x->base->slot_count; c++) {
     const size_t to = (size_t)x->base->slots[c].x * (size_t)count + (size_t)first;
-    dvi__chart_nodes nodes = nodes_of(x, c, count, first, group, xi, rate);
+    dvi__chart_nodes nodes = dvi__charted_nodes(x, c, count, first, group, xi, rate);
     nodes.in_xi = L_xi + to;
     nodes.in_rate = L_rate + to;
     if (apart)

@@ -2,6 +2,7 @@
 #ifndef DVI_SYSTEM_CHART_CHARTED_STRUCT_H
 #define DVI_SYSTEM_CHART_CHARTED_STRUCT_H
 #include "core/status.h"
+#include "group/chart_nodes.h"
 #include "system/chart/charted.h"
 #include "system/chart/reduced.h"
 
@@ -37,11 +38,6 @@ typedef struct dvi__hessian {
   double *qq, *qv, *vv;
 } dvi__hessian;
 
-/* Point k of a group that begins at point `first` of a batch of `count`. */
-typedef struct dvi__group_point {
-  int count, first, group, k;
-} dvi__group_point;
-
 /* Blocks that couple a body's rotation and its place x. Rotation is in rows and x in columns of qq
  * and qv. vv has both ways. */
 typedef struct dvi__coupling {
@@ -76,6 +72,7 @@ struct dvi__charted {
   double *L_yy; /* second derivatives [entries*GROUP] */
   /* tangents [nq*3*GROUP] at the points of a group, number i of point k at i*GROUP + k */
   double *T, *S;
+  double *slot_blocks;                 /* [4*9*GROUP] a slot's second derivatives there */
   dvi__pattern qq, qv, vv;             /* patterns of the new system */
   dvi__slot_blocks masses, potentials; /* blocks of vv that are not 0, and of qq */
   /* Diagonal blocks [slots] of the slots. Lines may have none. */
@@ -203,9 +200,9 @@ void dvi__charted_gather(const dvi__factor_slot *slot, int count, int k, const d
 dvi_status dvi__charted_forces(dvi__charted *charted, int count, int first, int group,
                                const double *t, const double *xi, const double *rate);
 
-/* Copy a slot's numbers of two of these arrays at point k of a group. */
-void dvi__charted_pair(const dvi__factor_slot *slot, int group, int k, const double *first,
-                       const double *second, double *a, double *b);
+/* Give the numbers of slot c at a group of points that begins at point `first` of a batch. */
+dvi__chart_nodes dvi__charted_nodes(const dvi__charted *charted, int c, int count, int first,
+                                    int group, const double *xi, const double *rate);
 
 /* Compute N at the nodes of a group whose forces are known. */
 void dvi__charted_find_moments(dvi__charted *charted, int first, int group);
@@ -219,10 +216,6 @@ void dvi__charted_clear_blocks(dvi__charted *charted);
 void dvi__charted_add_blocks(const dvi__charted *charted, int count, int first, int group,
                              int on_path, const dvi__hessian *to);
 
-/* Copy the tangents of slot c at point k of a group to their places among all. */
-void dvi__charted_put_tangents(const dvi__charted *charted, int c, int k, const double *tangents,
-                               double *all);
-
 /* Add T^T M T at point 0 of a group. */
 void dvi__charted_add_mass(const dvi__charted *charted, double *mass);
 
@@ -234,12 +227,9 @@ void dvi__charted_add_own_blocks(const dvi__charted *charted, int c, const doubl
 /* Compute W at the end of the path. */
 void dvi__charted_find_turns(dvi__charted *charted);
 
-/* Compute the change of W N into C_qq and C_qv. The first function clears both. The second adds
- * that of slot c at a point of a group by the slot's tangents, but for the products of blocks. The
- * last subtracts L's own Hessian. */
+/* Compute the change of W N into C_qq and C_qv. The first function clears both. Slots and blocks
+ * add theirs to them with the Hessian (charted_hessian.c). The last subtracts L's own Hessian. */
 void dvi__charted_clear_changes(dvi__charted *charted, int count);
-void dvi__charted_add_moment_changes(dvi__charted *charted, int c, const dvi__group_point *at,
-                                     const double *T, const double *S);
 void dvi__charted_finish_changes(const dvi__charted *charted, int count, const double *L_qq,
                                  const double *L_qv);
 
