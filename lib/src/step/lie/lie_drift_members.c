@@ -364,6 +364,21 @@ void dvi__lie_drift_kick_members(const dvi__lie_drift *l, int count, double h, c
   }
 }
 
+void dvi__lie_drift_push_members(const dvi__lie_drift *l, int count, double h, const double *F,
+                                 const dvi__phase *members)
+{
+  for (int c = 0; c < l->blocks.system->slot_count; c++) {
+    const dvi__factor_slot *slot = &l->blocks.system->slots[c];
+    lanes rows = lanes_of(slot, count, -h, members);
+    rows.V = F + (size_t)slot->v * rows.count;
+    if (slot->kind == DVI__SPHERE)
+      kicks[dvi__lanes_level()](&rows, slot->kind);
+    else
+      dvi__lanes_add_scaled((size_t)dvi__chart_velocities(slot->kind) * rows.count, h, rows.V,
+                            rows.p, rows.p_low);
+  }
+}
+
 void dvi__lie_drift_drift_members(const dvi__lie_drift *l, int count, double h,
                                   const dvi__phase *members, double *displacement, double *work,
                                   char *left)
