@@ -12,16 +12,7 @@
 #define INDEPENDENT
 #endif
 
-/* The rows of one slot, of which each member is a lane. */
-typedef struct lanes {
-  const dvi__mass_block *block;
-  size_t count;
-  double h;
-  const double *V;                       /* covector */
-  double *y, *y_low, *p, *p_low, *moved; /* with the displacement */
-  double *work;
-  char *left;
-} lanes;
+typedef dvi__slot_lanes lanes;
 
 /* Copy the numbers of one member from its rows, and back. */
 FUSED_INLINE void get(size_t count, const double *rows, int numbers, double *x)
@@ -334,6 +325,11 @@ static void (*const drifts[])(const lanes *s, int kind) = {
 #endif
 };
 
+void dvi__slot_lanes_drift(const dvi__slot_lanes *s)
+{
+  drifts[dvi__lanes_level()](s, s->block->slot->kind);
+}
+
 /* ---- all slots ---- */
 
 int dvi__lie_drift_has_members(const dvi__lie_drift *l)
@@ -390,6 +386,6 @@ void dvi__lie_drift_drift_members(const dvi__lie_drift *l, int count, double h,
     rows.moved = displacement + (size_t)block->slot->v * rows.count;
     rows.work = work;
     rows.left = left;
-    drifts[dvi__lanes_level()](&rows, block->slot->kind);
+    dvi__slot_lanes_drift(&rows);
   }
 }
