@@ -219,7 +219,7 @@ struct dvi__method {
   /* Step members as lanes. All three functions are NULL if the method has no lanes. prepare_lanes
    * allocates `lanes` for up to `capacity` members, if the system allows lanes and they are faster.
    * step_lanes advances all members that are not `left`, each with the bits and the counts of
-   * `step`, or marks members as `left`. */
+   * `step`, or marks members as `left`. It is called by dvi__take_step_lanes (damping.h). */
   dvi_status (*prepare_lanes)(dvi__stepper *self, int capacity);
   void (*clear_lanes)(dvi__stepper *self);
   void (*step_lanes)(dvi__stepper *self, dvi__members *members, double h);
@@ -249,7 +249,7 @@ dvi_status dvi__stepper_create_inner(dvi__stepper *self, const char *method,
 dvi_status dvi__stepper_check_step(const dvi__stepper *stepper, double h);
 
 /* Let a stepper serve up to `capacity` members side by side. `lanes` stays NULL if the method
- * cannot do this, or the system is damped. Called once. */
+ * cannot do this. Called once. */
 dvi_status dvi__stepper_prepare_lanes(dvi__stepper *stepper, int capacity);
 
 /* Parse a specification (settings.c). The caller clears the settings, whatever the status. */

@@ -7,18 +7,57 @@
 #include "support/runs.h"
 #include "support/suite.h"
 #include "support/systems/mixed_factors.h"
-
-enum { MEMBERS = 21, BLOCK = 8 };
+#include "integrator/ensemble/twins.h"
 
 /* ---- systems ---- */
 
-/* LOOSE has a direction, an angle and a motion whose centre of mass is not its origin. */
-enum { LOOSE_KIND, LINES_KIND, BODY_KIND, FREE_KIND, KINDS };
+/* LOOSE has a direction, an angle and a motion whose centre of mass is not its origin. STIRRED has
+ * a direction and a body with forces alone. */
+enum { LOOSE_KIND, LINES_KIND, BODY_KIND, FREE_KIND, STIRRED_KIND, KINDS };
+
+static int stir(double t, const double *q, const double *v, double *F, void *user)
+{
+  const int nv = *(const int *)user;
+  (void)v;
+  for (int i = 0; i < nv; i++) F[i] = .2 * sin(3 * t + i) + .1 * q[i];
+  return 0;
+}
+
+static int nv_of_direction = 3, nv_of_both = 6;
+static const dvi_force stirs_direction = {.name = "stir",
+                                          .value = stir,
+                                          .without_velocity = 1,
+                                          .user = &nv_of_direction},
+                       stirs_both = {.name = "stir",
+                                     .value = stir,
+                                     .without_velocity = 1,
+                                     .user = &nv_of_both};
+
+static void create_system(const dvi_system_terms *terms, body *model)
+{
+  ck_assert_msg(dvi_system_create(terms, &model->system) == DVI_OK, "%s", dvi_last_error());
+  model->nq = dvi_system_nq(model->system);
+  model->nv = dvi_system_nv(model->system);
+}
+
+static void make_stirred(body *model)
+{
+  static const double inertia[] = {1.3, .1, 0, .1, 1.1, .05, 0, .05, .9};
+  static const dvi_factor both[] = {{.kind = DVI_S2, .mass = 1},
+                                    {.kind = DVI_SO3, .inertia = inertia}};
+  *model = (body){.q = {0, 0, -1, 1, 0, 0, 0, 1, 0, 0, 0, 1}, .v = {.5, .2, 0, .3, -.4, .8}};
+  create_system(
+      &(dvi_system_terms){
+          .factors = both, .factor_count = 2, .forces = &stirs_both, .force_count = 1},
+      model);
+}
 
 static void make_kind(int kind, body *model)
 {
   if (kind < BODY_KIND)
     make_mixed_factors(kind == LOOSE_KIND ? LOOSE : LINES, model);
+  else if (kind == STIRRED_KIND)
+    make_stirred(model);
   else
     make_body(kind == BODY_KIND ? PENDULUM_3D : FREE_BODY, model);
 }
@@ -52,76 +91,35 @@ static void make_limited(limits *own, body *model)
                                   .factor_count = 1,
                                   .potentials = &weight,
                                   .potential_count = 1,
-                                  .autonomous = 1};
-  *model = (body){.nq = 3, .nv = 3, .q = {0, 0, -1}, .v = {0.5, 0, 0}};
-  ck_assert_msg(dvi_system_create(&terms, &model->system) == DVI_OK, "%s", dvi_last_error());
+                                  .forces = &stirs_direction,
+                                  .force_count = 1};
+  *model = (body){.q = {0, 0, -1}, .v = {0.5, 0, 0}};
+  create_system(&terms, model);
 }
 
 /* ---- members and their twins ---- */
 
-/* Lengths of steps change on the way, and the last ones go back. The longest turn some members too
- * far, which go on alone. */
+/* Lengths of steps change on the way, and one goes back. The longest turn some members too far,
+ * which go on alone. */
 static const double lengths[] = {.05, .05, .05, .1, .1, -.02, .2, .3, 1, 1.5, .05, .05};
 enum { STEPS = sizeof lengths / sizeof *lengths };
 
-static double v[BODY_V * MEMBERS];
-
-/* Starts the members with velocities of their own. */
-static void start_members(dvi_ensemble *e, const body *model)
+static twins twins_of(const body *model, const char *method)
 {
-  double q[BODY_Q * MEMBERS];
-  for (int k = 0; k < MEMBERS; k++) {
-    for (int i = 0; i < model->nq; i++) q[i * MEMBERS + k] = model->q[i];
-    for (int i = 0; i < model->nv; i++)
-      v[i * MEMBERS + k] = model->v[i] * 0.08 * (1 + 8 * k % MEMBERS);
-  }
-  ck_assert_msg(dvi_ensemble_start_velocity(e, 0, q, v) == DVI_OK, "%s", dvi_last_error());
+  return (twins){.system = model->system,
+                 .method = method,
+                 .nq = model->nq,
+                 .nv = model->nv,
+                 .q = model->q,
+                 .v = model->v,
+                 .steps = STEPS,
+                 .length = lengths};
 }
 
-/* Returns the gradients that the run alone takes. */
-static long same_as_alone(dvi_ensemble *e, const body *model, const char *method, int k)
-{
-  double t[MEMBERS], q[BODY_Q * MEMBERS], p[BODY_V * MEMBERS], start[BODY_V];
-  dvi_counters counters;
-  dvi_integrator *alone = create_integrator(model->system, method);
-  for (int i = 0; i < model->nv; i++) start[i] = v[i * MEMBERS + k];
-  dvi_status status = dvi_integrator_start_velocity(alone, 0, model->q, start);
-  for (int i = 0; i < STEPS; i++) status = dvi_integrator_step(alone, lengths[i]);
-  ck_assert_int_eq(dvi_ensemble_status(e, k), status);
-  ck_assert_int_eq(dvi_ensemble_state(e, t, q, p), DVI_OK);
-  for (int i = 0; i < model->nq; i++)
-    ck_assert_mem_eq(&q[i * MEMBERS + k], dvi_integrator_q(alone) + i, sizeof(double));
-  for (int i = 0; i < model->nv; i++)
-    ck_assert_mem_eq(&p[i * MEMBERS + k], dvi_integrator_p(alone) + i, sizeof(double));
-  ck_assert_double_eq(t[k], dvi_integrator_time(alone));
-  dvi_integrator_counters(alone, &counters);
-  dvi_integrator_destroy(&alone);
-  return counters.gradients;
-}
-
-static int goes_side_by_side(const dvi_ensemble *e)
-{
-  char text[4096];
-  (void)dvi_ensemble_explain(e, text, sizeof text);
-  return strstr(text, "side by side as lanes") != NULL;
-}
-
-/* Returns how many steps fail. */
 static long compare(const body *model, const char *method, int threads)
 {
-  dvi_counters counters;
-  dvi_ensemble *e = create_ensemble(
-      model->system, method,
-      (dvi_ensemble_options){.members = MEMBERS, .threads = threads, .block = BLOCK});
-  ck_assert(goes_side_by_side(e));
-  start_members(e, model);
-  for (int i = 0; i < STEPS; i++) (void)dvi_ensemble_step(e, lengths[i]);
-  long gradients = 0;
-  for (int k = 0; k < MEMBERS; k++) gradients += same_as_alone(e, model, method, k);
-  dvi_ensemble_counters(e, &counters);
-  ck_assert_int_eq(counters.gradients, gradients);
-  dvi_ensemble_destroy(&e);
-  return counters.failed_steps;
+  const twins all = twins_of(model, method);
+  return compare_members(&all, threads);
 }
 
 static void use_best_level(void)
@@ -173,7 +171,8 @@ START_TEST(a_step_takes_one_gradient_and_no_memory)
   make_kind(LOOSE_KIND, &model);
   dvi_ensemble *e = create_ensemble(model.system, "lie-verlet",
                                     (dvi_ensemble_options){.members = MEMBERS});
-  start_members(e, &model);
+  const twins all = twins_of(&model, "lie-verlet");
+  start_members(e, &all);
   ck_assert_int_eq(dvi_ensemble_advance(e, .01, 2), DVI_OK);
   dvi_ensemble_counters(e, &before);
   ck_assert_int_eq(dvi_ensemble_advance(e, .01, 10), DVI_OK);

@@ -190,7 +190,7 @@ static dvi_status lie_verlet_prepare_lanes(dvi__stepper *self, int capacity)
 {
   const lie_verlet *own = self->own;
   const dvi_system *s = self->system;
-  if (own->rattle != NULL || s->force_count > 0 || !dvi__lie_drift_has_members(own->drift) ||
+  if (own->rattle != NULL || !dvi__lie_drift_has_members(own->drift) ||
       !dvi__system_has_gradients(s))
     return DVI_OK;
   lie_verlet_lanes *lanes = self->lanes = DVI_NEW(lie_verlet_lanes, 1);
@@ -208,23 +208,32 @@ static void lie_verlet_clear_lanes(dvi__stepper *self)
   dvi__release(lanes);
 }
 
+static double *members_forces(const dvi__stepper *self, const dvi__members *m)
+{
+  return m->memory + (size_t)(lie_verlet_forces(self) - self->memory) * (size_t)m->count;
+}
+
 static dvi_status lie_verlet_gradients(const dvi__stepper *self, const dvi__members *m)
 {
-  const lie_verlet_lanes *lanes = self->lanes;
-  return self->system->potential_count == 0
-             ? DVI_OK
-             : dvi__potentials_gradient(lanes->evaluator, m->count, m->t, m->q, m->memory);
+  dvi__evaluator *evaluator = ((const lie_verlet_lanes *)self->lanes)->evaluator;
+  if (self->system->force_count > 0)
+    DVI_TRY(
+        dvi__forces(evaluator, DVI__FORCE, m->count, m->t, m->q, NULL, members_forces(self, m)));
+  return self->system->potential_count > 0
+             ? dvi__potentials_gradient(evaluator, m->count, m->t, m->q, m->memory)
+             : DVI_OK;
 }
 
 /* Evaluate the gradients at the start of a step if a member's is not known. Those that are known
  * stay as they are. */
 static dvi_status lie_verlet_first_gradients(const dvi__stepper *self, dvi__members *m)
 {
+  const int gradients = (self->system->potential_count > 0) + (self->system->force_count > 0);
   double *known = m->memory + (size_t)self->system->n * (size_t)m->count;
   int wanted = 0;
-  for (int k = 0; k < m->count && self->system->potential_count > 0; k++) {
+  for (int k = 0; k < m->count && gradients > 0; k++) {
     wanted |= known[k] == 0;
-    m->gradients[k] += 1 + (known[k] == 0);
+    m->gradients[k] += known[k] == 0 ? 2 * gradients : gradients;
     known[k] = 1;
   }
   return wanted ? lie_verlet_gradients(self, m) : DVI_OK;
@@ -236,6 +245,8 @@ static void lie_verlet_kick_members(const dvi__stepper *self, const dvi__members
   const lie_verlet *own = self->own;
   if (self->system->potential_count > 0)
     dvi__lie_drift_kick_members(own->drift, m->count, h, m->memory, phase);
+  if (self->system->force_count > 0)
+    dvi__lie_drift_push_members(own->drift, m->count, h, members_forces(self, m), phase);
 }
 
 /* Take the step of all members, or leave them all. When each steps alone, the member for which a
@@ -255,8 +266,8 @@ static void lie_verlet_step_lanes(dvi__stepper *self, dvi__members *m, double h)
   }
   lie_verlet_kick_members(self, m, &phase, 0.5 * h);
   dvi__lie_drift_drift_members(own->drift, m->count, h, &phase,
-                               m->memory + ((size_t)self->system->n + 1) * count, lanes->work,
-                               m->left);
+                               m->memory + (size_t)(displacement_of(self) - self->memory) * count,
+                               lanes->work, m->left);
   for (size_t k = 0; k < count; k++) dvi__add_compensated(m->t + k, m->t_compensation + k, h);
   if (lie_verlet_gradients(self, m) != DVI_OK)
     memset(m->left, 1, count);

@@ -7,7 +7,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "method/method.h"
+#include "method/damping.h"
 #include "method/scheme.h"
 #include "num/compensated.h"
 #include "system/rescale/transformed.h"
@@ -173,8 +173,7 @@ static void composition_step_lanes(dvi__stepper *self, dvi__members *m, double h
   double *t = self->lanes, *t_compensation = t + m->count;
   memcpy(t, m->t, bytes);
   memcpy(t_compensation, m->t_compensation, bytes);
-  for (int i = 0; i < s->substeps; i++)
-    base->method->step_lanes(base, m, h * dvi__scheme_part(s, i));
+  for (int i = 0; i < s->substeps; i++) dvi__take_step_lanes(base, m, h * dvi__scheme_part(s, i));
   for (int k = 0; k < m->count; k++)
     move_clock(t[k], t_compensation[k], h, m->t + k, m->t_compensation + k);
 }

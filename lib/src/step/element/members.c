@@ -171,6 +171,7 @@ void dvi__action_members_place(dvi__action_members *m, int count, double h, doub
   for (size_t j = 0; j < (size_t)a->r; j++)
     for (size_t k = 0; k < (size_t)count; k++) m->t[members_row(m, j) + k] = t[k] + a->node[j] * h;
   a->h = h;
+  dvi__action_damp(a, h);
   if (m->chord != NULL)
     dvi__chord_members_place(m, h / last_h);
   else

@@ -18,6 +18,7 @@ dvi_status dvi__lie_drift_create(const dvi_system *system, dvi__moser_veselov_ma
   dvi_status status = dvi__mass_blocks_create(system, &l->blocks);
   if (status == DVI_OK && l->blocks.coupled > 0)
     status = dvi__coupled_drift_create(system, l->blocks.together, counters, &l->together);
+  if (status == DVI_OK) status = dvi__lie_drift_find_runs(l);
   if (status != DVI_OK) dvi__lie_drift_destroy(drift);
   return status;
 }
@@ -28,6 +29,8 @@ void dvi__lie_drift_destroy(dvi__lie_drift **drift)
   if (l == NULL) return;
   dvi__coupled_drift_destroy(&l->together);
   dvi__mass_blocks_clear(&l->blocks);
+  dvi__release(l->run);
+  dvi__release(l->rows);
   dvi__release(l);
   *drift = NULL;
 }
@@ -175,8 +178,11 @@ static dvi_status drift_alone(const dvi__mass_block *own, dvi__moser_veselov_map
 dvi_status dvi__lie_drift_drift(dvi__lie_drift *l, double h, const dvi__phase *state,
                                 double *displacement)
 {
-  for (int i = 0; i < l->blocks.alone; i++)
-    DVI_TRY(drift_alone(&l->blocks.block[i], l->by, h, state, displacement));
+  for (int i = 0, next; i < l->blocks.alone; i = next) {
+    next = i + l->run[i];
+    if (l->run[i] > 1 && dvi__lie_drift_run(l, i, h, state, displacement)) continue;
+    for (; i < next; i++) DVI_TRY(drift_alone(&l->blocks.block[i], l->by, h, state, displacement));
+  }
   return l->together == NULL ? DVI_OK
                              : dvi__coupled_drift_drift(l->together, h, state, displacement);
 }

@@ -12,16 +12,7 @@
 #define INDEPENDENT
 #endif
 
-/* The rows of one slot, of which each member is a lane. */
-typedef struct lanes {
-  const dvi__mass_block *block;
-  size_t count;
-  double h;
-  const double *V;                       /* covector */
-  double *y, *y_low, *p, *p_low, *moved; /* with the displacement */
-  double *work;
-  char *left;
-} lanes;
+typedef dvi__slot_lanes lanes;
 
 /* Copy the numbers of one member from its rows, and back. */
 FUSED_INLINE void get(size_t count, const double *rows, int numbers, double *x)
@@ -334,6 +325,11 @@ static void (*const drifts[])(const lanes *s, int kind) = {
 #endif
 };
 
+void dvi__slot_lanes_drift(const dvi__slot_lanes *s)
+{
+  drifts[dvi__lanes_level()](s, s->block->slot->kind);
+}
+
 /* ---- all slots ---- */
 
 int dvi__lie_drift_has_members(const dvi__lie_drift *l)
@@ -364,6 +360,21 @@ void dvi__lie_drift_kick_members(const dvi__lie_drift *l, int count, double h, c
   }
 }
 
+void dvi__lie_drift_push_members(const dvi__lie_drift *l, int count, double h, const double *F,
+                                 const dvi__phase *members)
+{
+  for (int c = 0; c < l->blocks.system->slot_count; c++) {
+    const dvi__factor_slot *slot = &l->blocks.system->slots[c];
+    lanes rows = lanes_of(slot, count, -h, members);
+    rows.V = F + (size_t)slot->v * rows.count;
+    if (slot->kind == DVI__SPHERE)
+      kicks[dvi__lanes_level()](&rows, slot->kind);
+    else
+      dvi__lanes_add_scaled((size_t)dvi__chart_velocities(slot->kind) * rows.count, h, rows.V,
+                            rows.p, rows.p_low);
+  }
+}
+
 void dvi__lie_drift_drift_members(const dvi__lie_drift *l, int count, double h,
                                   const dvi__phase *members, double *displacement, double *work,
                                   char *left)
@@ -375,6 +386,6 @@ void dvi__lie_drift_drift_members(const dvi__lie_drift *l, int count, double h,
     rows.moved = displacement + (size_t)block->slot->v * rows.count;
     rows.work = work;
     rows.left = left;
-    drifts[dvi__lanes_level()](&rows, block->slot->kind);
+    dvi__slot_lanes_drift(&rows);
   }
 }

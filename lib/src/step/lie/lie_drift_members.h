@@ -13,6 +13,10 @@ int dvi__lie_drift_has_members(const dvi__lie_drift *drift);
 void dvi__lie_drift_kick_members(const dvi__lie_drift *drift, int count, double h,
                                  const double *V_q, const dvi__phase *members);
 
+/* Set p += h F for forces F [nv*count]. */
+void dvi__lie_drift_push_members(const dvi__lie_drift *drift, int count, double h, const double *F,
+                                 const dvi__phase *members);
+
 /* Take the drifts, with displacement [nv*count] and work [DVI__LIE_DRIFT_WORK*count]. Members that
  * would turn too far are marked in left [count], and their numbers are invalid. */
 void dvi__lie_drift_drift_members(const dvi__lie_drift *drift, int count, double h,
