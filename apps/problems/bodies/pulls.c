@@ -2,20 +2,21 @@
 
 #include <math.h>
 
-enum { POINTS = 8 }; /* points of a batch that are evaluated side by side */
+#include "entry.h"
 
-/* The functions of one point alone are compiled apart, because codes that ask for one should not
- * pay for loops. */
-#define INLINE static inline __attribute__((always_inline))
+enum { POINTS = 8 }; /* points of a batch that are evaluated side by side */
 
 static ptrdiff_t arm_row(const arm *of, int i, int count)
 {
   return (ptrdiff_t)(of->first + i * of->stride) * count;
 }
 
+/* The functions of one point alone are compiled apart, because codes that ask for one should not
+ * pay for loops. */
+
 /* Compute the vectors r of a pull at `some` points from q on, and |r|^2. */
-INLINE void pull_vectors(const pull *of, int count, int some, const double *q, double r[3][POINTS],
-                         double *r2)
+PROBLEM_INLINE void pull_vectors(const pull *of, int count, int some, const double *q,
+                                 double r[3][POINTS], double *r2)
 {
   for (int k = 0; k < some; k++) r[0][k] = r[1][k] = r[2][k] = 0;
   for (int a = 0; a < of->arms; a++)
@@ -27,8 +28,8 @@ INLINE void pull_vectors(const pull *of, int count, int some, const double *q, d
 }
 
 /* Compute strength/|r|^3 as well. */
-INLINE void pull_forces(const pull *of, int count, int some, const double *q, double r[3][POINTS],
-                        double *r2, double *force)
+PROBLEM_INLINE void pull_forces(const pull *of, int count, int some, const double *q,
+                                double r[3][POINTS], double *r2, double *force)
 {
   pull_vectors(of, count, some, q, r, r2);
   for (int k = 0; k < some; k++) force[k] = of->strength / (r2[k] * sqrt(r2[k]));
@@ -50,7 +51,8 @@ static int pulls_value(int count, const double *t, const double *q, double *V, v
   return 0;
 }
 
-INLINE void add_gradients(const pulls *all, int count, int some, const double *q, double *V_q)
+PROBLEM_INLINE void add_gradients(const pulls *all, int count, int some, const double *q,
+                                  double *V_q)
 {
   for (int j = 0; j < all->count; j++) {
     const pull *of = &all->pull[j];
