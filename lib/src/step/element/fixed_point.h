@@ -35,6 +35,9 @@ int dvi__action_has_fixed_point(const dvi__action *action);
 /* Tell whether the iteration takes quadratic potentials implicitly (preconditioner.c). */
 int dvi__action_has_preconditioner(const dvi__action *action);
 
+/* Tell whether slow potentials lag behind fast ones in the iteration (system/evaluate/lagged.h). */
+int dvi__action_lags(const dvi__action *action);
+
 /* Keep the inverses of `count` lengths of steps, instead of one. DVI_NO_MEMORY. */
 dvi_status dvi__action_keep_lengths(dvi__action *action, int count);
 
@@ -43,8 +46,9 @@ dvi_status dvi__action_keep_lengths(dvi__action *action, int count);
 void dvi__action_fixed_point_begin(dvi__action *action, const double *Y);
 
 /* Give the forces of the last iteration or residual, g [n*r], with a vector potential g and a
- * [n*2r]. Those of a preconditioner's potentials are left out. Their number is 0 for a system of
- * another kind, and nothing is done. */
+ * [n*2r]. Those of a preconditioner's potentials are left out. Where slow potentials lag, the
+ * iteration's factors follow, which a residual leaves as they are. The number of all is 0 for a
+ * system of another kind, and nothing is done. */
 int dvi__action_forces_count(const dvi__action *action);
 void dvi__action_forces(const dvi__action *action, double *g);
 

@@ -1,5 +1,6 @@
 #include "system/evaluate/untested.h"
 
+#include "core/status.h"
 #include "num/simd/wide.h"
 #include "system/evaluate/evaluator_struct.h"
 
@@ -66,4 +67,20 @@ dvi__gradient_callback *dvi__lone_gradient(const dvi__evaluator *e, void **user)
   if (s->potential_count != 1 || s->force_count > 0) return NULL;
   *user = s->potentials[0].callbacks.user;
   return s->potentials[0].callbacks.gradient_batch;
+}
+
+dvi_status dvi__some_gradients_untested(dvi__evaluator *e, int fast, int count, const double *t,
+                                        const double *q, double *V_q)
+{
+  const dvi_system *s = e->system;
+  int found = 0;
+  if (fast) e->counters->gradients += count;
+  for (int p = 0; p < s->potential_count; p++) {
+    const dvi__potential_term *term = &s->potentials[p];
+    if ((term->callbacks.fast != 0) != fast) continue;
+    DVI_TRY(evaluate_term(e, term, count, t, q, found ? e->term : V_q));
+    if (found) add_gradient((size_t)s->n * (size_t)count, e->term, V_q);
+    found = 1;
+  }
+  return DVI_OK;
 }
