@@ -43,8 +43,8 @@ static inline int nbody_potential(const int dimension, int count, const double *
   return 0;
 }
 
-/* Compute the squared distances of all pairs at one point. Rows of q are `stride` apart. Returns the
- * number of squares. */
+/* Compute the squared distances of all pairs at one point. Rows of q are `stride` apart. Returns
+ * the number of squares. */
 PROBLEM_INLINE int squared_distances(const int dimension, int stride, const double *restrict q,
                                      const nbody *own, double *restrict r2)
 {
