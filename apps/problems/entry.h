@@ -20,9 +20,8 @@
 /* Compile a function into its callers, once for each of their instruction sets. */
 #define PROBLEM_INLINE static inline __attribute__((always_inline))
 
-/* Count of numbers that are worked on together, and the largest one. */
+/* Count of numbers that are worked on together. */
 #define PROBLEM_TILE 32
-#define PROBLEM_TILE_MAX 40
 
 /* Replace x by x^(-3/2), right to three ulp, for positive normal numbers. 0 and NaN give numbers
  * that are not finite. A square root and a division would take longer. The exponent's bits halved
@@ -31,7 +30,7 @@
  * before. */
 PROBLEM_INLINE void problem_inverse_cubes(const int count, double *restrict x)
 {
-  double y[PROBLEM_TILE_MAX], e[PROBLEM_TILE_MAX];
+  double y[PROBLEM_TILE], e[PROBLEM_TILE];
   for (int k = 0; k < count; k++) {
     uint64_t bits;
     memcpy(&bits, x + k, sizeof bits);

@@ -19,30 +19,15 @@ typedef struct gravity {
   nbody_motion motions[SYMMETRIES_MAX];
 } gravity;
 
-/* Pairs of bodies that one potential sums. */
-typedef enum nbody_pairs { ALL_PAIRS, PAIRS_OF_LAST, PAIRS_OF_OTHERS } nbody_pairs;
+/* The kernels below take the dimension as a constant at each of their callers, so that the loops
+ * over the axes are unrolled and the loop over the points is the one that is vectorised. */
 
-/* Give the range of the second body of pairs whose first is a, which is not the last body. */
-PROBLEM_INLINE int first_partner(const nbody_pairs pairs, const nbody *own, int a)
-{
-  return pairs == PAIRS_OF_LAST ? own->bodies - 1 : a + 1;
-}
-
-PROBLEM_INLINE int end_of_partners(const nbody_pairs pairs, const nbody *own)
-{
-  return pairs == PAIRS_OF_OTHERS ? own->bodies - 1 : own->bodies;
-}
-
-/* The kernels below take the dimension and the pairs as constants at each of their callers, so that
- * the loops over the axes are unrolled and the loop over the points is the one that is
- * vectorised. */
-
-static inline int nbody_potential(const int dimension, const nbody_pairs pairs, int count,
-                                  const double *q, double *V, const nbody *own)
+static inline int nbody_potential(const int dimension, int count, const double *q, double *V,
+                                  const nbody *own)
 {
   for (int k = 0; k < count; k++) V[k] = 0.0;
-  for (int a = 0; a < own->bodies - 1; a++)
-    for (int b = first_partner(pairs, own, a); b < end_of_partners(pairs, own); b++) {
+  for (int a = 0; a < own->bodies; a++)
+    for (int b = a + 1; b < own->bodies; b++) {
       const double *restrict x_a = q + a * dimension * count, *restrict x_b = q +
                                                                               b * dimension * count;
       const double weight = own->G * own->mass[a] * own->mass[b];
@@ -58,98 +43,146 @@ static inline int nbody_potential(const int dimension, const nbody_pairs pairs, 
   return 0;
 }
 
-/* Compute the squared distances of all pairs at `lanes` points, [pairs*lanes]. Rows of q are
- * `stride` apart. Returns the number of squares. */
-PROBLEM_INLINE int squared_distances(const int dimension, const nbody_pairs pairs, const int lanes,
-                                     int stride, const double *restrict q, const nbody *own,
-                                     double *restrict r2)
+/* Compute the squared distances of all pairs at one point. Rows of q are `stride` apart. Returns
+ * the number of squares. */
+PROBLEM_INLINE int squared_distances(const int dimension, int stride, const double *restrict q,
+                                     const nbody *own, double *restrict r2)
 {
   const int row = dimension * stride;
   int at = 0;
-  for (int a = 0; a < own->bodies - 1; a++)
-    for (int b = first_partner(pairs, own, a); b < end_of_partners(pairs, own); b++, at += lanes)
-      for (int k = 0; k < lanes; k++) {
-        double sum = 0.0;
-        for (int i = 0; i < dimension; i++) {
-          const double d = q[a * row + i * stride + k] - q[b * row + i * stride + k];
-          sum += d * d;
-        }
-        r2[at + k] = sum;
+  for (int a = 0; a < own->bodies; a++)
+    for (int b = a + 1; b < own->bodies; b++) {
+      double sum = 0.0;
+      for (int i = 0; i < dimension; i++) {
+        const double d = q[a * row + i * stride] - q[b * row + i * stride];
+        sum += d * d;
       }
+      r2[at++] = sum;
+    }
   return at;
 }
 
 /* Add the pulls of all pairs to one gradient row, and subtract them from the other. */
-PROBLEM_INLINE void nbody_pull(const int dimension, const nbody_pairs pairs, const int lanes,
-                               int stride, const double *restrict q, const nbody *own,
-                               const double *restrict inverse_cube, double *restrict V_q)
+PROBLEM_INLINE void nbody_pull(const int dimension, int stride, const double *restrict q,
+                               const nbody *own, const double *restrict inverse_cube,
+                               double *restrict V_q)
 {
   const int row = dimension * stride;
-  for (int a = 0; a < own->bodies - 1; a++)
-    for (int b = first_partner(pairs, own, a); b < end_of_partners(pairs, own);
-         b++, inverse_cube += lanes) {
-      const double weight = own->G * own->mass[a] * own->mass[b];
-      for (int i = 0; i < dimension; i++)
-        for (int k = 0; k < lanes; k++) {
-          const int at_a = a * row + i * stride + k, at_b = b * row + i * stride + k;
-          const double force = weight * inverse_cube[k] * (q[at_a] - q[at_b]);
-          V_q[at_a] = force + (pairs == PAIRS_OF_LAST ? 0.0 : V_q[at_a]);
-          V_q[at_b] -= force;
-        }
+  for (int a = 0; a < own->bodies; a++)
+    for (int b = a + 1; b < own->bodies; b++) {
+      const double weight = own->G * own->mass[a] * own->mass[b] * *inverse_cube++;
+      for (int i = 0; i < dimension; i++) {
+        const int at_a = a * row + i * stride, at_b = b * row + i * stride;
+        const double force = weight * (q[at_a] - q[at_b]);
+        V_q[at_a] += force;
+        V_q[at_b] -= force;
+      }
     }
 }
 
-PROBLEM_INLINE void nbody_gradient_at(const int dimension, const nbody_pairs pairs, const int lanes,
-                                      int stride, const double *q, double *V_q, const nbody *own)
+/* Compute the gradient at a single point, where pairs take the place of points. */
+PROBLEM_INLINE void nbody_gradient_at_one(const int dimension, int stride, const double *q,
+                                          double *V_q, const nbody *own)
 {
-  double r[NBODY_PAIRS_MAX * 8 + PROBLEM_TILE_MAX];
-  /* six bodies have 15 pairs, 5 with the last one */
-  const int tile = lanes == 1               ? PROBLEM_TILE / 2
-                   : pairs == PAIRS_OF_LAST ? PROBLEM_TILE / 4 * 5
-                                            : PROBLEM_TILE;
-  const int numbers = squared_distances(dimension, pairs, lanes, stride, q, own, r);
+  double r[NBODY_PAIRS_MAX + PROBLEM_TILE];
+  const int tile = PROBLEM_TILE / 2; /* six bodies have 15 pairs */
+  const int numbers = squared_distances(dimension, stride, q, own, r);
   for (int k = numbers; k < numbers + tile; k++) r[k] = 1.0; /* the last tile is computed in full */
   for (int k = 0; k < numbers; k += tile) problem_inverse_cubes(tile, r + k);
-  nbody_pull(dimension, pairs, lanes, stride, q, own, r, V_q);
+  for (int i = 0; i < own->bodies * dimension; i++) V_q[i * stride] = 0.0;
+  nbody_pull(dimension, stride, q, own, r, V_q);
+}
+
+/* Numbers at eight points. */
+typedef double eight __attribute__((vector_size(8 * sizeof(double))));
+typedef uint64_t eight_bits __attribute__((vector_size(8 * sizeof(double))));
+
+/* Do what problem_inverse_cubes does. */
+PROBLEM_INLINE void inverse_cube(eight *x)
+{
+  eight y = (eight)(UINT64_C(0x5fe6eb50c7b537a9) - ((eight_bits)*x >> 1)), e = 1.0 - *x * (y * y);
+  y += y * (e * (0.5 + e * (0.375 + e * 0.3125)));
+  e = 1.0 - *x * (y * y);
+  y += y * (e * (0.5 + e * 0.375));
+  *x = y * y * y;
+}
+
+/* The forces of pairs a < b, in [a][b]. */
+typedef eight pair_forces[NBODY_MAX][NBODY_MAX][3];
+
+/* Compute them at eight points, in registers. The processor takes up the next pair before one is
+ * done. Rows are `stride` apart. */
+PROBLEM_INLINE void forces_at_eight(const int dimension, int stride, const double *q,
+                                    const nbody *own, pair_forces force)
+{
+  const int row = dimension * stride;
+  eight at[3], d[3];
+  for (int a = 0; a < own->bodies; a++) {
+    for (int i = 0; i < dimension; i++) memcpy(&at[i], q + a * row + i * stride, sizeof at[i]);
+    for (int b = a + 1; b < own->bodies; b++) {
+      eight cube = {0};
+      for (int i = 0; i < dimension; i++) {
+        memcpy(&d[i], q + b * row + i * stride, sizeof d[i]);
+        d[i] = at[i] - d[i];
+        cube += d[i] * d[i];
+      }
+      inverse_cube(&cube);
+      cube *= own->G * own->mass[a] * own->mass[b];
+      for (int i = 0; i < dimension; i++) force[a][b][i] = cube * d[i];
+    }
+  }
+}
+
+PROBLEM_INLINE void nbody_gradient_at_eight(const int dimension, int stride, const double *q,
+                                            double *V_q, const nbody *own)
+{
+  pair_forces force;
+  forces_at_eight(dimension, stride, q, own, force);
+  for (int c = 0; c < own->bodies; c++) {
+    eight sum[3] = {{0}, {0}, {0}};
+    for (int a = 0; a < c; a++)
+      for (int i = 0; i < dimension; i++) sum[i] -= force[a][c][i];
+    for (int b = c + 1; b < own->bodies; b++)
+      for (int i = 0; i < dimension; i++) sum[i] += force[c][b][i];
+    for (int i = 0; i < dimension; i++)
+      memcpy(V_q + (c * dimension + i) * stride, &sum[i], sizeof sum[i]);
+  }
 }
 
 /* Compute the gradients at fewer than eight points. The last point fills the others. */
-PROBLEM_INLINE void nbody_gradient_of_few(const int dimension, const nbody_pairs pairs, int points,
-                                          int stride, const double *q, double *V_q,
-                                          const nbody *own)
+PROBLEM_INLINE void nbody_gradient_at_few(const int dimension, int points, int stride,
+                                          const double *q, double *V_q, const nbody *own)
 {
   double filled[24 * NBODY_MAX] = {0}, result[24 * NBODY_MAX] = {0};
   const int n = own->bodies * dimension;
   for (int i = 0; i < n; i++)
     for (int k = 0; k < 8; k++) filled[8 * i + k] = q[i * stride + (k < points ? k : points - 1)];
-  nbody_gradient_at(dimension, pairs, 8, 8, filled, result, own);
+  nbody_gradient_at_eight(dimension, 8, filled, result, own);
   for (int i = 0; i < n; i++)
     for (int k = 0; k < points; k++) V_q[i * stride + k] = result[8 * i + k];
 }
 
 /* Compute the gradients at eight points at once. Loops of known length need no preparation, which
- * would cost more than their work. For a single point the pairs take the place of points. */
-PROBLEM_INLINE int nbody_gradient(const int dimension, const nbody_pairs pairs, int count,
-                                  const double *q, double *V_q, const nbody *own)
+ * would cost more than their work. */
+PROBLEM_INLINE int nbody_gradient(const int dimension, int count, const double *q, double *V_q,
+                                  const nbody *own)
 {
   int k = 0;
-  const int zeros = pairs == PAIRS_OF_LAST ? (own->bodies - 1) * dimension * count : 0;
-  for (int j = zeros; j < own->bodies * dimension * count; j++) V_q[j] = 0.0;
-  for (; k + 8 <= count; k += 8) nbody_gradient_at(dimension, pairs, 8, count, q + k, V_q + k, own);
-  if (count - k > 1) nbody_gradient_of_few(dimension, pairs, count - k, count, q + k, V_q + k, own);
-  if (count - k == 1) nbody_gradient_at(dimension, pairs, 1, count, q + k, V_q + k, own);
+  for (; k + 8 <= count; k += 8) nbody_gradient_at_eight(dimension, count, q + k, V_q + k, own);
+  if (count - k > 1) nbody_gradient_at_few(dimension, count - k, count, q + k, V_q + k, own);
+  if (count - k == 1) nbody_gradient_at_one(dimension, count, q + k, V_q + k, own);
   return 0;
 }
 
 /* Evaluate the Hessian. The block weight (1/r^3 - 3 d d^T/r^5) of a pair is added to both diagonal
  * blocks, and subtracted off the diagonal. */
-static inline int nbody_hessian(const int dimension, const nbody_pairs pairs, int count,
-                                const double *q, double *V_qq, const nbody *own)
+static inline int nbody_hessian(const int dimension, int count, const double *q, double *V_qq,
+                                const nbody *own)
 {
   const int n = own->bodies * dimension;
   for (int j = 0; j < n * n * count; j++) V_qq[j] = 0.0;
-  for (int a = 0; a < own->bodies - 1; a++)
-    for (int b = first_partner(pairs, own, a); b < end_of_partners(pairs, own); b++) {
+  for (int a = 0; a < own->bodies; a++)
+    for (int b = a + 1; b < own->bodies; b++) {
       const double weight = own->G * own->mass[a] * own->mass[b];
       for (int k = 0; k < count; k++) {
         double d[3], r2 = 0.0;
@@ -174,28 +207,27 @@ static inline int nbody_hessian(const int dimension, const nbody_pairs pairs, in
   return 0;
 }
 
-/* The callbacks of one dimension and of some pairs. */
-#define CALLBACKS(name, dimension, pairs)                                                          \
-  static int value_##name(int count, const double *t, const double *q, double *V, void *user)      \
+/* The callbacks of one dimension. */
+#define CALLBACKS(dimension)                                                                       \
+  static int value_##dimension(int count, const double *t, const double *q, double *V, void *user) \
   {                                                                                                \
     (void)t;                                                                                       \
-    return nbody_potential(dimension, pairs, count, q, V, user);                                   \
+    return nbody_potential(dimension, count, q, V, user);                                          \
   }                                                                                                \
-  PROBLEM_LANES static int gradient_##name(int count, const double *t, const double *q,            \
-                                           double *V_q, void *user)                                \
+  PROBLEM_LANES static int gradient_##dimension(int count, const double *t, const double *q,       \
+                                                double *V_q, void *user)                           \
   {                                                                                                \
     (void)t;                                                                                       \
-    return nbody_gradient(dimension, pairs, count, q, V_q, user);                                  \
+    return nbody_gradient(dimension, count, q, V_q, user);                                         \
   }                                                                                                \
-  static int hessian_##name(int count, const double *t, const double *q, double *V_qq, void *user) \
+  static int hessian_##dimension(int count, const double *t, const double *q, double *V_qq,        \
+                                 void *user)                                                       \
   {                                                                                                \
     (void)t;                                                                                       \
-    return nbody_hessian(dimension, pairs, count, q, V_qq, user);                                  \
+    return nbody_hessian(dimension, count, q, V_qq, user);                                         \
   }
-CALLBACKS(in_plane, 2, ALL_PAIRS)
-CALLBACKS(in_space, 3, ALL_PAIRS)
-CALLBACKS(of_last, 3, PAIRS_OF_LAST)
-CALLBACKS(of_others, 3, PAIRS_OF_OTHERS)
+CALLBACKS(2)
+CALLBACKS(3)
 
 static int nbody_translation(const double *q, double *xi, void *user)
 {
@@ -242,37 +274,20 @@ static int nbody_make_symmetries(gravity *own, dvi_symmetry *symmetries)
   return count;
 }
 
-/* Give the potential of some pairs. */
-#define POTENTIAL(title, kind, bodies)                                               \
-  {                                                                                  \
-    .name = (title), .value_batch = value_##kind, .gradient_batch = gradient_##kind, \
-    .hessian_batch = hessian_##kind, .user = (bodies)                                \
-  }
-
-/* Fill the potentials. Returns their number. A central body is one of space. */
-static int nbody_make_potentials(gravity *own, dvi_potential *potentials)
-{
-  nbody *bodies = &own->bodies;
-  const dvi_potential in_plane = POTENTIAL("gravity", in_plane, bodies),
-                      in_space = POTENTIAL("gravity", in_space, bodies),
-                      of_last = POTENTIAL("pulls of the centre", of_last, bodies),
-                      of_others = POTENTIAL("pulls of the others", of_others, bodies);
-  potentials[0] = bodies->central ? of_last : bodies->dimension == 2 ? in_plane : in_space;
-  potentials[0].fast = bodies->central;
-  potentials[1] = of_others;
-  return bodies->central ? 2 : 1;
-}
-
 static dvi_status nbody_make_system(gravity *own, problem *made)
 {
-  dvi_potential potentials[2];
+  const int planar = own->bodies.dimension == 2;
+  const dvi_potential attraction = {.name = "gravity",
+                                    .value_batch = planar ? value_2 : value_3,
+                                    .gradient_batch = planar ? gradient_2 : gradient_3,
+                                    .hessian_batch = planar ? hessian_2 : hessian_3,
+                                    .user = &own->bodies};
   dvi_symmetry symmetries[SYMMETRIES_MAX];
-  const int potential_count = nbody_make_potentials(own, potentials),
-            symmetry_count = nbody_make_symmetries(own, symmetries);
+  const int symmetry_count = nbody_make_symmetries(own, symmetries);
   const dvi_system_terms terms = {.dimension = made->nq,
                                   .mass = {.diagonal = own->masses},
-                                  .potentials = potentials,
-                                  .potential_count = potential_count,
+                                  .potentials = &attraction,
+                                  .potential_count = 1,
                                   .symmetries = symmetries,
                                   .symmetry_count = symmetry_count,
                                   .autonomous = 1};

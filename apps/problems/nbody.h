@@ -15,9 +15,6 @@ typedef struct nbody {
   double mass[NBODY_MAX];
   const char *name[NBODY_MAX];
   double position[NBODY_MAX][3], velocity[NBODY_MAX][3];
-  /* the last body's pulls exceed the others by far, and are a potential of their own, declared
-   * fast */
-  int central;
 } nbody;
 
 /* The outer solar system, the Sun last. */

@@ -23,7 +23,6 @@ const nbody outer_solar_bodies = {
                  {0.00288930, 0.00114527, 0.00039677},
                  {0.00276725, -0.00170702, -0.00136504},
                  {0.0, 0.0, 0.0}},
-    .central = 1,
 };
 
 static dvi_status outer_solar_make(const double *setting, problem *made)

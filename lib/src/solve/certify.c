@@ -5,13 +5,14 @@
 
 int dvi__certify_is_prepared(const dvi__solver *s, int most)
 {
-  return s->tester != NULL && (most <= 1 || s->many != NULL);
+  return s->keeps_point && (most <= 1 || s->many != NULL);
 }
 
 dvi_status dvi__certify_prepare(dvi__solver *s, int most)
 {
   if (dvi__certify_is_prepared(s, most)) return DVI_OK;
   if (s->tester == NULL) DVI_TRY(dvi__kinsol_create(s, 1, &s->tester));
+  s->keeps_point = 1;
   if (s->many == NULL && most > 1) DVI_TRY(dvi__kinsol_create(s, most, &s->many));
   s->counters->preparations++;
   return DVI_OK;

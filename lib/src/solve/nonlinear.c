@@ -291,7 +291,7 @@ int dvi__fixed_point_most(int patient)
 static void keep_point(dvi__solver *s)
 {
   const dvi__equations *equations = &s->equations;
-  s->has_point = s->tester != NULL;
+  s->has_point = s->keeps_point;
   if (s->has_point)
     memcpy(dvi__kinsol_point(s->tester, 0), equations->own_point(equations->of),
            (size_t)equations->own_unknowns * sizeof(double));

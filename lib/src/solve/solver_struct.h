@@ -24,7 +24,8 @@ struct dvi__solver {
   dvi__kinsol *tester; /* tests the equations' own variables; NULL if not prepared */
   dvi__kinsol *many;   /* tests many solutions in these at once (certify.h); NULL if not prepared */
   double whole;        /* largest of those after the last iteration */
-  int has_point;       /* the tester has the point before it */
+  int keeps_point;     /* the tester gets the point before it */
+  int has_point;       /* and has it */
 };
 
 /* Evaluate the residual and count it. */

@@ -11,6 +11,11 @@
 /* Steps of more numbers at the nodes have their costs in their loops. */
 enum { FEW_NUMBERS = 1024, LONGEST_WAIT = 4096 };
 
+int dvi__element_shows_residuals(const dvi__element *own)
+{
+  return dvi__action_has_offsets(own->action) && !dvi__action_lags(own->action);
+}
+
 /* Tell whether steps by fixed-point iteration can follow one after the other. Nothing but the ends
  * of each is asked then, and each starts from the forces of the one before. */
 static int element_marches(const dvi__stepper *self)
@@ -20,6 +25,7 @@ static int element_marches(const dvi__stepper *self)
          dvi__action_has_offsets(own->action) && !own->has_forces && !own->has_rates &&
          !own->centred && !own->keeps_whole && self->system->damping == 0 &&
          own->choice <= DVI__SOLVER_FIXED_POINT &&
+         (own->choice != DVI__SOLVER_CERTIFIED || dvi__element_shows_residuals(own)) &&
          self->system->n * dvi__action_nodes(own->action) <= FEW_NUMBERS;
 }
 

@@ -549,7 +549,7 @@ dvi_status dvi__element_step(dvi__stepper *self, dvi__state *state, double h)
   dvi__element *own = self->own;
   dvi__solve_report report = {0};
   const dvi__element_place at = element_place(self, state, h);
-  if (own->choice == DVI__SOLVER_CERTIFIED && dvi__action_has_offsets(own->action))
+  if (own->choice == DVI__SOLVER_CERTIFIED && dvi__element_shows_residuals(own))
     DVI_TRY(dvi__certify_prepare(own->solver, own->most_together));
   dvi__action_soften(own->action, state->side > 1);
   DVI_TRY(element_find_path(self, &at, &report));

@@ -81,6 +81,9 @@ typedef struct dvi__element {
 /* Put the equations at a step of length h from there. */
 void dvi__element_put(dvi__element *own, const dvi__element_place *at, double h);
 
+/* Tell whether the last iteration shows a residual. It does not where forces lag. */
+int dvi__element_shows_residuals(const dvi__element *own);
+
 /* Tell the driver whether the element marches. */
 void dvi__element_admit_march(dvi__stepper *self);
 
