@@ -267,31 +267,73 @@ static dvi_status verlet_step(dvi__stepper *self, dvi__state *state, double h)
   return DVI_OK;
 }
 
-/* ---- temporal blocking ---- */
+/* ---- several steps at once ---- */
+
+/* Tell whether steps can be taken one array after the other, with both kicks by a gradient in one
+ * pass over the coordinates. */
+static int verlet_kicks_twice(const dvi__stepper *self)
+{
+  return self->settings.value[BLOCKING] != BLOCKING_NONE &&
+         ((const verlet *)self->own)->change == NULL && self->system->damping == 0;
+}
+
+static int verlet_sweep(const dvi__stepper *self, const dvi__blocking_step *s)
+{
+  const verlet *own = self->own;
+  const size_t n = (size_t)self->system->n;
+  dvi__kick_drift sweep = {.count = n,
+                           .kicks = 1,
+                           .kick = {-0.5 * s->h[0]},
+                           .by = own->by,
+                           .scalar = own->scalar,
+                           .mass = self->system->mass_diagonal,
+                           .force = s->gradient,
+                           .from = s->from,
+                           .to = s->to};
+  for (int k = 0; k < s->count; k++) {
+    sweep.drift = s->h[k];
+    if (!dvi__lanes_kick_drift(&sweep) ||
+        dvi__potentials_gradient(own->evaluator, 1, &s->t[k], s->to.q, s->gradient_to) != DVI_OK)
+      return 0;
+    if (k + 1 == s->count) break;
+    sweep.kicks = 2;
+    sweep.kick[0] = -0.5 * s->h[k];
+    sweep.kick[1] = -0.5 * s->h[k + 1];
+    sweep.force = s->gradient_to;
+    sweep.from = s->to;
+  }
+  return dvi__lanes_last_kick(&(dvi__last_kick){.count = n,
+                                                .kick = -0.5 * s->h[s->count - 1],
+                                                .force = s->gradient_to,
+                                                .from = s->to,
+                                                .to = s->to});
+}
 
 static int verlet_pass(dvi__stepper *self, const dvi__state *now, const double *before,
                        dvi__state *next, const double *h, int count)
 {
   const verlet *own = self->own;
   double t[DVI__BLOCKING_SUBSTEPS];
-  if (own->blocking == NULL || count > DVI__BLOCKING_SUBSTEPS) return 0;
-  const int known = before[self->system->n] != 0;
+  const int known = before[self->system->n] != 0, sweeps = own->blocking == NULL;
+  if (count > DVI__BLOCKING_SUBSTEPS || (sweeps && (!known || !verlet_kicks_twice(self)))) return 0;
   next->t = now->t;
   next->t_compensation = now->t_compensation;
   for (int i = 0; i < count; i++) {
     dvi__add_compensated(&next->t, &next->t_compensation, h[i]);
     t[i] = next->t;
   }
-  self->counters->gradients += count + !known;
+  const dvi__blocking_step step = {.count = count,
+                                   .h = h,
+                                   .t0 = now->t,
+                                   .t = t,
+                                   .from = verlet_phase_of(now),
+                                   .to = verlet_phase_of(next),
+                                   .gradient = known ? before : NULL,
+                                   .gradient_to = self->memory};
   *verlet_gradient_known(self, self->memory) = 1;
-  return dvi__blocking_run(own->blocking, &(dvi__blocking_step){.count = count,
-                                                                .h = h,
-                                                                .t0 = now->t,
-                                                                .t = t,
-                                                                .from = verlet_phase_of(now),
-                                                                .to = verlet_phase_of(next),
-                                                                .gradient = known ? before : NULL,
-                                                                .gradient_to = self->memory});
+  if (sweeps) return verlet_sweep(self, &step);
+  self->counters->gradients += count + !known;
+  return dvi__blocking_run(own->blocking, &step);
 }
 
 static double verlet_traffic(const dvi__stepper *self, int count)
