@@ -110,6 +110,28 @@ START_TEST(steps_are_stable_up_to_the_bound_of_their_scheme)
 }
 END_TEST
 
+/* Where nothing else takes part, the kicks on both sides of a substep's end are taken together. */
+START_TEST(substeps_together_have_the_bits_of_single_operations)
+{
+  static const char *const names[] = {"kepler", "henon-heiles", "outer-solar"};
+  problem *model = create_problem(names[_i], NULL);
+  dvi_integrator *together = start_integrator(model, "composition:order=8"),
+                 *single = start_integrator(model, "composition:order=8,blocking=none");
+  const size_t bytes = (size_t)model->nq * sizeof(double);
+  dvi_counters one, other;
+  advance(together, 0.05, 20);
+  advance(single, 0.05, 20);
+  ck_assert_mem_eq(dvi_integrator_q(together), dvi_integrator_q(single), bytes);
+  ck_assert_mem_eq(dvi_integrator_p(together), dvi_integrator_p(single), bytes);
+  dvi_integrator_counters(together, &one);
+  dvi_integrator_counters(single, &other);
+  ck_assert_int_eq(one.gradients, other.gradients);
+  dvi_integrator_destroy(&together);
+  dvi_integrator_destroy(&single);
+  problem_destroy(&model);
+}
+END_TEST
+
 START_TEST(the_lengths_of_substeps_are_parts_of_the_step)
 {
   const dvi__scheme *s = dvi__scheme_at(_i);
@@ -129,5 +151,6 @@ SUITE(composition)
   tcase_add_test(tests, a_composition_of_compositions_is_refused);
   tcase_add_loop_test(tests, the_substeps_add_up_to_the_step, 0, 3);
   tcase_add_test(tests, a_base_of_higher_order_keeps_its_order);
+  tcase_add_loop_test(tests, substeps_together_have_the_bits_of_single_operations, 0, 3);
   tcase_add_test(tests, verlet_keeps_its_one_gradient_a_substep);
 }
