@@ -47,13 +47,13 @@ static double **canonical_owned_array(dvi__canonical *c, int i)
 
 static dvi_status canonical_allocate(dvi__canonical *c)
 {
-  const size_t r = (size_t)c->r, n = (size_t)c->n,
+  const size_t r = (size_t)c->r, z = (size_t)dvi__canonical_room(c),
                qq = (size_t)dvi__pattern_entries(&c->system->qq),
                qp = (size_t)dvi__pattern_entries(&c->system->qv),
                pp = (size_t)dvi__pattern_entries(&c->system->vv);
-  const size_t size[] = {1, n, n, n, n, qq, qp, pp};
+  const size_t size[] = {r, z, z, z, z, qq * r, qp * r, pp * r};
   for (int i = 0; canonical_owned_array(c, i) != NULL; i++) {
-    *canonical_owned_array(c, i) = DVI_NEW(double, size[i] * r + 1);
+    *canonical_owned_array(c, i) = DVI_NEW(double, size[i] + 1);
     if (*canonical_owned_array(c, i) == NULL)
       return dvi__fail(DVI_NO_MEMORY, "no memory for %d points in %d dimensions", c->r, c->n);
   }

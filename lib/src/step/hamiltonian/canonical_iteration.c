@@ -5,9 +5,10 @@
  *     P_i = p0 - h sum_j (b_j - b_j a_ji / b_i) H_q_j,
  *
  * whose right sides are a contraction for short steps. */
-#include <math.h>
+#include <string.h>
 
 #include "step/hamiltonian/canonical_struct.h"
+#include "step/hamiltonian/rows.h"
 #include "step/onestep/collocation.h"
 #include "core/memory.h"
 #include "core/status.h"
@@ -57,8 +58,8 @@ dvi_status dvi__canonical_iteration_create(dvi__canonical *c)
   if (!dvi__canonical_has_iteration(c)) return DVI_OK;
   dvi__canonical_iteration *own = &c->iteration;
   own->lanes = dvi__lanes_for(c->r);
-  const size_t table = (size_t)c->r * (size_t)own->lanes, numbers = (size_t)c->n * (size_t)c->r;
-  own->a = DVI_NEW(double, 3 * table + 3 * numbers);
+  const size_t table = (size_t)c->r * (size_t)own->lanes, numbers = (size_t)dvi__canonical_room(c);
+  own->a = DVI_NEW(double, 3 * table + 7 * numbers);
   if (own->a == NULL)
     return dvi__fail(DVI_NO_MEMORY, "no memory for %d points in %d dimensions", c->r, c->n);
   own->adjoint = own->a + table;
@@ -66,6 +67,10 @@ dvi_status dvi__canonical_iteration_create(dvi__canonical *c)
   own->dq = own->path + table;
   own->dp = own->dq + numbers;
   own->sum = own->dp + numbers;
+  own->q0 = own->sum + numbers;
+  own->p0 = own->q0 + numbers;
+  own->of_q = own->p0 + numbers;
+  own->of_p = own->of_q + numbers;
   return fill_coefficients(c, own);
 }
 
@@ -81,40 +86,39 @@ int dvi__canonical_has_iteration(const dvi__canonical *c)
 
 /* ---- iterate ---- */
 
-/* The largest change and the largest increment of one kind, in its units. */
-typedef struct largest {
-  double change, whole;
-} largest;
-
 static inline double larger(double x, double y)
 {
   return x > y ? x : y;
 }
 
-/* Replace increments by h times the sums, and set the points. */
-WIDE static void move_points(int n, int r, double h, const double *restrict sum,
-                             const double *restrict start, const double *restrict unit,
-                             double *restrict increment, double *restrict point, largest *most)
+/* Move a block of points. */
+INLINE void move_block(double h, const block *sum, const block *start, const block *scale,
+                       block *increment, block *point, largest_lanes *most)
 {
-  enum { LANES = 4 };
-  double change[LANES] = {0}, whole[LANES] = {0}, not_finite[LANES] = {0};
-  for (int i = 0; i < n; i++) {
-    const double scale = unit != NULL ? 1 / unit[i] : 1, from = start[i];
-    for (int j = 0; j < r; j++) {
-      const int at = i * r + j, lane = j % LANES;
-      const double next = h * sum[at], moved = fabs(next - increment[at]) * scale;
-      increment[at] = next;
-      point[at] = from + next;
-      change[lane] = larger(moved, change[lane]);
-      whole[lane] = larger(fabs(next) * scale, whole[lane]);
-      not_finite[lane] += 0 * moved;
-    }
+  const block next = h * *sum, change = (next - *increment) * *scale, whole = next * *scale;
+  *increment = next;
+  *point = *start + next;
+  note_change(&change, &whole, most);
+}
+
+/* Replace increments by h times the sums, and set the points. The last block may have zeros behind
+ * the numbers. Gives the largest change and increment of one kind, q or p, in its units. */
+WIDE static void move_points(int count, double h, const double *sum, const double *start,
+                             const double *scale, double *increment, double *point, largest *most)
+{
+  largest_lanes lanes = {{0}, {0}, {0}};
+  for (int i = 0; i < count; i += BLOCK) {
+    block by, from, unit, old, at;
+    memcpy(&by, sum + i, sizeof by);
+    memcpy(&from, start + i, sizeof from);
+    memcpy(&unit, scale + i, sizeof unit);
+    memcpy(&old, increment + i, sizeof old);
+    move_block(h, &by, &from, &unit, &old, &at, &lanes);
+    memcpy(increment + i, &old, sizeof old);
+    memcpy(point + i, &at, sizeof at);
   }
   *most = (largest){0};
-  for (int k = 0; k < LANES; k++) {
-    most->change = not_finite[k] == 0 ? larger(change[k], most->change) : HUGE_VAL;
-    most->whole = larger(whole[k], most->whole);
-  }
+  add_largest(&lanes, most);
 }
 
 /* Measure p as a part of its own motion where that is the larger one, or changes of p alternate
@@ -131,8 +135,13 @@ void dvi__canonical_begin(dvi__canonical *c, const double *x)
   dvi__canonical_points(c, x);
   for (int i = 0; i < c->n; i++)
     for (int j = 0; j < c->r; j++) {
-      own->dq[i * c->r + j] = c->Q[i * c->r + j] - c->q0[i];
-      own->dp[i * c->r + j] = c->P[i * c->r + j] - c->p0[i];
+      const int at = i * c->r + j;
+      own->dq[at] = c->Q[at] - c->q0[i];
+      own->dp[at] = c->P[at] - c->p0[i];
+      own->q0[at] = c->q0[i];
+      own->p0[at] = c->p0[i];
+      own->of_q[at] = 1;
+      own->of_p[at] = 1 / c->unit[i];
     }
 }
 
@@ -143,9 +152,9 @@ static dvi_status sweep(dvi__canonical *c, double *change, double *whole)
   largest q, p;
   DVI_TRY(dvi__lagrangian_gradient(c->evaluator, c->r, c->t, c->Q, c->P, c->H_q, c->H_p));
   dvi__lanes_product(c->n, c->r, own->lanes, c->r, own->a, c->H_p, own->sum);
-  move_points(c->n, c->r, c->h, own->sum, c->q0, NULL, own->dq, c->Q, &q);
+  move_points(c->n * c->r, c->h, own->sum, own->q0, own->of_q, own->dq, c->Q, &q);
   dvi__lanes_product(c->n, c->r, own->lanes, c->r, own->adjoint, c->H_q, own->sum);
-  move_points(c->n, c->r, -c->h, own->sum, c->p0, c->unit, own->dp, c->P, &p);
+  move_points(c->n * c->r, -c->h, own->sum, own->p0, own->of_p, own->dp, c->P, &p);
   const double weight = weight_of_momenta(&q, &p);
   *change = larger(larger(q.change, weight * p.change), *change);
   *whole = larger(q.whole, weight * p.whole);

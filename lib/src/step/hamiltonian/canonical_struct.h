@@ -13,6 +13,8 @@ typedef struct dvi__canonical_iteration {
   double *path;        /* [r*lanes] Y of slopes q' at the points */
   double *dq, *dp;     /* [n*r] increments at the points */
   double *sum;         /* [n*r] work */
+  double *q0, *p0;     /* [n*r] the start, at each point */
+  double *of_q, *of_p; /* [n*r] one over the units */
 } dvi__canonical_iteration;
 
 struct dvi__canonical {
@@ -42,6 +44,12 @@ struct dvi__canonical {
   double *t, *Q, *P, *H_q, *H_p, *H_qq, *H_qp, *H_pp;
   dvi__canonical_iteration iteration;
 };
+
+/* Give the count of the numbers at the points, rounded up to whole blocks of 4. */
+static inline int dvi__canonical_room(const dvi__canonical *c)
+{
+  return (c->n * c->r + 3) / 4 * 4;
+}
 
 /* Set Q and P at the unknowns x. */
 void dvi__canonical_points(dvi__canonical *canonical, const double *x);

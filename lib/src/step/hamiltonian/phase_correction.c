@@ -9,7 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "step/hamiltonian/phase_rows.h"
+#include "step/hamiltonian/rows.h"
 #include "step/hamiltonian/phase_struct.h"
 #include "core/status.h"
 #include "num/simd/wide.h"

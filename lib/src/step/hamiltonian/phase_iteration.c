@@ -2,10 +2,11 @@
 #include <math.h>
 #include <string.h>
 
-#include "step/hamiltonian/phase_rows.h"
+#include "step/hamiltonian/rows.h"
 #include "step/hamiltonian/phase_struct.h"
 #include "core/memory.h"
 #include "core/status.h"
+#include "num/finite.h"
 #include "num/simd/wide.h"
 
 enum { COORDINATES_MOST = 16 };
@@ -184,44 +185,41 @@ static inline double larger(double x, double y)
 
 /* The largest correction, unknown and coordinate of one kind, q or p. */
 typedef struct measure {
-  double change, whole, size, not_finite;
+  largest is;
+  double size;
 } measure;
 
 /* Subtract corrections, in lanes. */
-WIDE static void subtract_and_measure(int count, const double *restrict correction,
-                                      double *restrict x, measure *is)
+WIDE static void subtract_and_measure(int count, const double *correction, double *x, largest *most)
 {
-  double change[BLOCK] = {0}, whole[BLOCK] = {0}, not_finite[BLOCK] = {0};
+  largest_lanes lanes = {{0}, {0}, {0}};
+  block by, next;
+  double not_finite = 0;
   int i = 0;
-  for (; i + BLOCK <= count; i += BLOCK)
-    for (int k = 0; k < BLOCK; k++) {
-      const double by = fabs(correction[i + k]), next = x[i + k] - correction[i + k];
-      x[i + k] = next;
-      change[k] = larger(by, change[k]);
-      whole[k] = larger(fabs(next), whole[k]);
-      not_finite[k] += 0 * by;
-    }
+  for (; i + BLOCK <= count; i += BLOCK) {
+    memcpy(&by, correction + i, sizeof by);
+    memcpy(&next, x + i, sizeof next);
+    next -= by;
+    memcpy(x + i, &next, sizeof next);
+    note_change(&by, &next, &lanes);
+  }
   for (; i < count; i++) {
     x[i] -= correction[i];
-    change[0] = larger(fabs(correction[i]), change[0]);
-    whole[0] = larger(fabs(x[i]), whole[0]);
-    not_finite[0] += 0 * correction[i];
+    most->change = larger(fabs(correction[i]), most->change);
+    most->whole = larger(fabs(x[i]), most->whole);
+    not_finite += 0 * correction[i];
   }
-  for (int k = 0; k < BLOCK; k++) {
-    is->change = larger(change[k], is->change);
-    is->whole = larger(whole[k], is->whole);
-    is->not_finite += not_finite[k];
-  }
+  if (not_finite != 0) most->change = HUGE_VAL;
+  add_largest(&lanes, most);
 }
 
 static void correct_kind(int n, int lanes, const double *start, const double *of_W,
-                         const double *of_D, double *W, double *D, measure *is)
+                         const double *of_D, double *W, double *D, measure *kind)
 {
-  *is = (measure){0};
-  for (int i = 0; i < n; i++) is->size = larger(fabs(start[i]), is->size);
-  subtract_and_measure(n * lanes, of_W, W, is);
-  subtract_and_measure(n, of_D, D, is);
-  is->size += is->whole;
+  *kind = (measure){.size = dvi__largest((size_t)n, start)};
+  subtract_and_measure(n * lanes, of_W, W, &kind->is);
+  subtract_and_measure(n, of_D, D, &kind->is);
+  kind->size += kind->is.whole;
 }
 
 /* Subtract the corrections, and measure those of p in a unit in which p is as large as q. */
@@ -239,8 +237,8 @@ static void correct(dvi__phase_element *f, double *change, double *whole)
     for (int l = 0; l < f->k; l++) multipliers[1 + l] -= own->of_moment[a * f->k + l];
   }
   const double unit = p.size / q.size, weight = isnormal(unit) && isnormal(1 / unit) ? 1 / unit : 1;
-  *whole = larger(q.whole, weight * p.whole);
-  *change = q.not_finite + p.not_finite == 0 ? larger(q.change, weight * p.change) : HUGE_VAL;
+  *whole = larger(q.is.whole, weight * p.is.whole);
+  *change = larger(q.is.change, weight * p.is.change);
 }
 
 /* A correction of more than this part of the unknowns leaves its matrices so far behind that new

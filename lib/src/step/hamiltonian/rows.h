@@ -1,6 +1,8 @@
-/* Rows of numbers at the stages of an element on phase space, as lanes of vectors. */
-#ifndef DVI_STEP_HAMILTONIAN_PHASE_ROWS_H
-#define DVI_STEP_HAMILTONIAN_PHASE_ROWS_H
+/* Rows of numbers at the stages of a step on phase space, as lanes of vectors. */
+#ifndef DVI_STEP_HAMILTONIAN_ROWS_H
+#define DVI_STEP_HAMILTONIAN_ROWS_H
+#include <math.h>
+#include <stdint.h>
 #include <string.h>
 
 #include "num/simd/width.h"
@@ -9,6 +11,42 @@
 enum { BLOCK = 4 };
 
 typedef double block __attribute__((vector_size(BLOCK * sizeof(double))));
+typedef int64_t block_mask __attribute__((vector_size(BLOCK * sizeof(int64_t))));
+
+/* The largest of changes and of the numbers that they lead to, 0 before. Changes that are not
+ * finite make the largest one infinite. */
+typedef struct largest {
+  double change, whole;
+} largest;
+
+/* The same, lane by lane. */
+typedef struct largest_lanes {
+  block change, whole, not_finite;
+} largest_lanes;
+
+/* Replace most by the magnitude of x where that is larger. */
+INLINE void take_larger(const block *x, block *most)
+{
+  const block_mask magnitude = (block_mask)*x & INT64_MAX;
+  const block_mask is_larger = (block_mask)((block)magnitude > *most);
+  *most = (block)((is_larger & magnitude) | (~is_larger & (block_mask)*most));
+}
+
+INLINE void note_change(const block *change, const block *next, largest_lanes *most)
+{
+  take_larger(change, &most->change);
+  take_larger(next, &most->whole);
+  most->not_finite += 0.0 * *change;
+}
+
+INLINE void add_largest(const largest_lanes *lanes, largest *most)
+{
+  for (int k = 0; k < BLOCK; k++) {
+    if (lanes->change[k] > most->change) most->change = lanes->change[k];
+    if (lanes->whole[k] > most->whole) most->whole = lanes->whole[k];
+    if (!(lanes->not_finite[k] == 0)) most->change = HUGE_VAL;
+  }
+}
 
 /* Add factor_i x_i to y_i for a row of lanes. */
 INLINE void add_row(int lanes, const double *factor, const double *x, double *y)
