@@ -170,10 +170,13 @@ dvi_status dvi__canonical_scale(dvi__canonical *c, double *scale)
   return DVI_OK;
 }
 
+/* With as many points as degrees both increments have the same weights, to the last bit. Others
+ * would make the energy drift. */
 void dvi__canonical_ends(const dvi__canonical *c, const double *x, double *dq, double *dp)
 {
   for (int i = 0; i < c->n; i++) {
-    dq[i] = canonical_dot(c->s, c->end, x + i * c->m);
+    dq[i] = c->r == c->s ? c->h * canonical_dot(c->r, c->b, c->H_p + i * c->r)
+                         : canonical_dot(c->s, c->end, x + i * c->m);
     dp[i] = -c->h * canonical_dot(c->r, c->b, c->H_q + i * c->r);
   }
 }

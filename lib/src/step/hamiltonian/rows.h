@@ -13,8 +13,8 @@ enum { BLOCK = 4 };
 typedef double block __attribute__((vector_size(BLOCK * sizeof(double))));
 typedef int64_t block_mask __attribute__((vector_size(BLOCK * sizeof(int64_t))));
 
-/* The largest of changes and of the numbers that they lead to, 0 before. Changes that are not finite
- * make the largest one infinite. */
+/* The largest of changes and of the numbers that they lead to, 0 before. Changes that are not
+ * finite make the largest one infinite. */
 typedef struct largest {
   double change, whole;
 } largest;
