@@ -56,14 +56,25 @@ static double *lie_verlet_gradient_known(const dvi__stepper *self)
   return self->memory + self->system->n;
 }
 
+/* Where the displacement and the forces begin in the memory. */
+static size_t displacement_at(const dvi__stepper *self)
+{
+  return (size_t)self->system->n + 1;
+}
+
+static size_t forces_at(const dvi__stepper *self)
+{
+  return displacement_at(self) + (size_t)self->system->nv;
+}
+
 static double *displacement_of(const dvi__stepper *self)
 {
-  return self->memory + self->system->n + 1;
+  return self->memory + displacement_at(self);
 }
 
 static double *lie_verlet_forces(const dvi__stepper *self)
 {
-  return displacement_of(self) + self->system->nv;
+  return self->memory + forces_at(self);
 }
 
 static double *lie_verlet_multipliers(const dvi__stepper *self)
@@ -210,7 +221,7 @@ static void lie_verlet_clear_lanes(dvi__stepper *self)
 
 static double *members_forces(const dvi__stepper *self, const dvi__members *m)
 {
-  return m->memory + (size_t)(lie_verlet_forces(self) - self->memory) * (size_t)m->count;
+  return m->memory + forces_at(self) * (size_t)m->count;
 }
 
 static dvi_status lie_verlet_gradients(const dvi__stepper *self, const dvi__members *m)
@@ -266,8 +277,7 @@ static void lie_verlet_step_lanes(dvi__stepper *self, dvi__members *m, double h)
   }
   lie_verlet_kick_members(self, m, &phase, 0.5 * h);
   dvi__lie_drift_drift_members(own->drift, m->count, h, &phase,
-                               m->memory + (size_t)(displacement_of(self) - self->memory) * count,
-                               lanes->work, m->left);
+                               m->memory + displacement_at(self) * count, lanes->work, m->left);
   for (size_t k = 0; k < count; k++) dvi__add_compensated(m->t + k, m->t_compensation + k, h);
   if (lie_verlet_gradients(self, m) != DVI_OK)
     memset(m->left, 1, count);

@@ -5,8 +5,12 @@
 #include "step/lie/lie_drift_struct.h"
 #include "step/lie/slot.h"
 
-/* Mark a loop of which no step writes what another one reads. */
-#if defined(__GNUC__) && !defined(__clang__)
+/* Mark a loop of which no step writes what another one reads. clang warns of one that it does not
+ * make vectors of, as it does where it optimises little. */
+#if defined(__clang__)
+#pragma clang diagnostic ignored "-Wpass-failed"
+#define INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
+#elif defined(__GNUC__)
 #define INDEPENDENT _Pragma("GCC ivdep")
 #else
 #define INDEPENDENT
@@ -63,7 +67,7 @@ FUSED_INLINE void kick_vectors(const lanes *s, const int numbers)
   }
 }
 
-FUSED_INLINE void kick(const lanes *s, int kind)
+FUSED_INLINE void kick(const lanes *s, dvi__chart_kind kind)
 {
   switch (kind) {
   case DVI__CIRCLE: kick_circles(s); break;
@@ -280,7 +284,7 @@ FUSED_INLINE void drift_bodies(const lanes *s)
   if (rigid) shift_back(s);
 }
 
-FUSED_INLINE void drift(const lanes *s, int kind)
+FUSED_INLINE void drift(const lanes *s, dvi__chart_kind kind)
 {
   switch (kind) {
   case DVI__CIRCLE: drift_circles(s); break;
@@ -292,14 +296,14 @@ FUSED_INLINE void drift(const lanes *s, int kind)
 
 /* ---- instruction sets ---- */
 
-#define LEVEL(suffix, target)                                 \
-  target static void kick_##suffix(const lanes *s, int kind)  \
-  {                                                           \
-    kick(s, kind);                                            \
-  }                                                           \
-  target static void drift_##suffix(const lanes *s, int kind) \
-  {                                                           \
-    drift(s, kind);                                           \
+#define LEVEL(suffix, target)                                             \
+  target static void kick_##suffix(const lanes *s, dvi__chart_kind kind)  \
+  {                                                                       \
+    kick(s, kind);                                                        \
+  }                                                                       \
+  target static void drift_##suffix(const lanes *s, dvi__chart_kind kind) \
+  {                                                                       \
+    drift(s, kind);                                                       \
   }
 
 LEVEL(baseline, )
@@ -309,7 +313,7 @@ LEVEL(avx512, __attribute__((target("fma,avx512f,avx512dq,avx512vl"))))
 #endif
 
 /* Levels in the order of num/simd/lanes.c. */
-static void (*const kicks[])(const lanes *s, int kind) = {
+static void (*const kicks[])(const lanes *s, dvi__chart_kind kind) = {
     kick_baseline,
 #ifdef __x86_64__
     kick_avx2,
@@ -317,7 +321,7 @@ static void (*const kicks[])(const lanes *s, int kind) = {
 #endif
 };
 
-static void (*const drifts[])(const lanes *s, int kind) = {
+static void (*const drifts[])(const lanes *s, dvi__chart_kind kind) = {
     drift_baseline,
 #ifdef __x86_64__
     drift_avx2,
