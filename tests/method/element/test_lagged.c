@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "num/simd/lanes.h"
 #include "support/prepared.h"
 #include "support/runs.h"
 #include "support/suite.h"
@@ -176,6 +177,36 @@ START_TEST(restored_runs_go_on)
 }
 END_TEST
 
+START_TEST(levels_have_the_same_bits)
+{
+  double base[N];
+  declare(1, 0);
+  for (int level = 0; level < dvi__lanes_levels(); level++) {
+    dvi__lanes_choose(level);
+    dvi_integrator *run = start("galerkin:degree=7");
+    advance(run, 500, 20);
+    if (level == 0) memcpy(base, dvi_integrator_q(run), sizeof base);
+    ck_assert_mem_eq(dvi_integrator_q(run), base, sizeof base);
+    dvi_integrator_destroy(&run);
+  }
+  dvi__lanes_choose(-1);
+}
+END_TEST
+
+START_TEST(steps_of_other_lengths_lead_back)
+{
+  declare(1, 0);
+  dvi_integrator *run = start("galerkin:degree=8");
+  advance(run, 600, 3);
+  advance(run, 200, 3);
+  advance(run, -200, 3);
+  advance(run, -600, 3);
+  ck_assert_int_eq(read_counters(run).fixed_points, 12);
+  ck_assert_double_le(distance(N, dvi_integrator_q(run), model->q), 1e-14 * magnitude(N, model->q));
+  dvi_integrator_destroy(&run);
+}
+END_TEST
+
 /* ---- failures ---- */
 
 /* Of slow forces, by a callback that fails, and by one that gives NaN. */
@@ -255,6 +286,8 @@ SUITE(lagged)
   tcase_add_loop_test(tests, solutions_are_those_of_all_forces, 0, 2);
   tcase_add_test(tests, solutions_are_certified);
   tcase_add_test(tests, restored_runs_go_on);
+  tcase_add_test(tests, levels_have_the_same_bits);
+  tcase_add_test(tests, steps_of_other_lengths_lead_back);
   tcase_add_loop_test(tests, slow_forces_that_fail_leave_the_state, 0, 4);
   tcase_add_loop_test(tests, constant_fast_forces_are_solved, 0, 2);
 }
