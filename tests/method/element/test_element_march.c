@@ -212,6 +212,8 @@ END_TEST
 
 SUITE(element_march)
 {
+  /* states are compared by their checkpoints, and disks may be busy */
+  tcase_set_timeout(tests, 120);
   tcase_add_checked_fixture(tests, make_folder, remove_folder);
   tcase_add_loop_test(tests, a_run_has_the_bits_of_single_steps_and_their_rungs, 0, MARCHES);
   tcase_add_loop_test(tests, a_run_that_fails_ends_at_the_last_good_step, 0, 4);
