@@ -157,8 +157,9 @@ static const char *const details[] = {
     "Of methods that know how many bytes a step moves, those of a second are printed beside what "
     "an in-place axpy,\n"
     "y <- y + a x, of as many numbers moves on one thread in the same round.\n",
-    "--scale members=1,64,4096: members of an ensemble instead, near the problem's start, beside "
-    "runs one after the other.\n"
+    "--scale members=1,64,4096: members of an ensemble instead, near the problem's start (with "
+    "factors or constraints of other\n"
+    "speeds alone), beside runs one after the other.\n"
     "The first 64 (--steps) steps, the start included. Columns: "
     "method,problem,members,n,h,step_seconds,step_lower,\n"
     "step_upper,alone_seconds,alone_lower,alone_upper,gain,step_evaluations; seconds are those of "

@@ -18,7 +18,7 @@
 
 enum { STEPS_DEFAULT = 64, MEMBERS_MOST = 1000000, LABEL_SIZE = 300 };
 
-/* Members start within this fraction of the problem's own start, coordinate by coordinate. */
+/* Members start within this fraction of the problem's own start, number by number. */
 static const double around = 0.01;
 
 static const char axis_word[] = "members=";
@@ -71,16 +71,28 @@ static members_result *members_cell(const comparison *c, int method, int k)
   return &c->cell[method * c->counts.count + k];
 }
 
+/* Return a factor near 1, another one for each number. */
+static double factor_of(double number)
+{
+  return 1.0 + around * (fmod(0.618033988749895 * (number + 1.0), 1.0) - 0.5);
+}
+
+/* Numbers near a start on a manifold are off it. Members differ in their speeds there. */
+static bool starts_on_manifold(const problem *scene)
+{
+  return scene->velocity != NULL || scene->terms->holonomic_count > 0;
+}
+
 /* Place a member. A one-form determines p for any v. */
 static dvi_status place_member(const comparison *c, int k)
 {
   const int n = c->scene->nq;
+  const bool on_manifold = starts_on_manifold(c->scene);
   double *q = c->point, *p = c->point + n;
   for (int i = 0; i < n; i++) {
-    const double factor = 1.0 +
-                          around * (fmod(0.618033988749895 * ((double)k * n + i + 1), 1.0) - 0.5);
-    q[i] = factor * c->scene->q[i];
-    p[i] = factor * c->scene->p[i];
+    const double factor = factor_of(on_manifold ? k : (double)k * n + i);
+    q[i] = on_manifold ? c->scene->q[i] : factor * c->scene->q[i];
+    if (i < c->scene->nv) p[i] = factor * c->scene->p[i];
   }
   return c->scene->terms->one_form != NULL
              ? dvi_system_momentum(c->scene->system, 0.0, q, c->scene->q, p)
@@ -358,13 +370,6 @@ int members_run(const scale_request *request)
   if (code == DONE)
     code = open_shaped(request->problem, request->settings, request->one_point, &c.scene);
   if (code != DONE) return code;
-  if (c.scene->velocity != NULL) {
-    code = usage_error("bench: --scale members: the members are numbers near %s's start, and so "
-                       "off its manifold; try another problem",
-                       c.scene->name);
-    problem_destroy(&c.scene);
-    return code;
-  }
   c.h = isnan(request->h) ? c.scene->h : request->h;
   code = members_check_methods(&c);
   if (code == DONE) events_passed("bench", c.scene);

@@ -58,7 +58,7 @@ sleigh | 20 | | nonholonomic
 rolling-disk | 50 | | nonholonomic
 spherical-constrained | 20 | | galerkin:degree=4 galerkin:degree=6
 slider-crank | 2 | | galerkin
-andrews | 0.03 | | galerkin:degree=4 galerkin:degree=6
+andrews | 0.03 | | galerkin:degree=3 galerkin:degree=4 galerkin:degree=6
 END
 }
 
@@ -68,8 +68,8 @@ members() {
     galerkin) set -- galerkin:degree= 4 6 8 12 ;;
     composition) set -- composition:order= 6 8 ;;
     hamiltonian) set -- hamiltonian:degree= 4 6 8 ;;
-    sem) set -- sem:degree= 2 4 ;;
-    prolongation-collocation) set -- prolongation-collocation:derivatives= 4 6 ;;
+    sem) set -- sem:degree= 4 6 ;;
+    prolongation-collocation) set -- prolongation-collocation:derivatives= 6 8 ;;
     lie-rk) set -- lie-rk:scheme= munthe-kaas ;;
     imex | nonholonomic) set -- "composition:base=$1,order=" 6 8 ;;
     hp) set -- hp:degree= 4 6 8 ;;
@@ -77,7 +77,10 @@ members() {
     vprk | dvrk) set -- "$1:nodes=" 4 5 6 ;;
     dg) set -- dg:stiffness=1,degree= 3 4 5 ;;
     dg-phase) set -- dg-phase:degree= 3 4 5 ;;
-    shooting) set -- shooting:quadrature=lobatto,onestep= butcher6 cooper-verner ;;
+    shooting)
+      set -- shooting:onestep= butcher6,quadrature=lobatto cooper-verner,quadrature=lobatto \
+        taylor,stages=10,quadrature=gauss-hermite
+      ;;
     multiscale) set -- multiscale:fast=0:1,omega=100,degree= 2 4 ;;
     trig) set -- trig:filter= hochbruck-lubich gautschi ;;
     *) set -- "$1" '' ;;

@@ -1,6 +1,7 @@
 #include "mechanics/march.h"
 
 #include <math.h>
+#include <stdbool.h>
 
 enum { PROGRESS_STEPS = 256, SPAN_TRIES = 8, SPAN_STEPS_MAX = 1 << 20 };
 static const double shorter = 0.25; /* factor of the step in the next try to measure a span */
@@ -27,6 +28,13 @@ static int march_after_step(dvi_integrator *integrator, void *user)
   return m->look != NULL ? m->look(integrator, m->user) : 0;
 }
 
+/* Tell whether nothing happens between the steps, and they have one length in time. */
+static bool march_is_plain(const dvi_integrator *integrator, march_look look,
+                           const progress_line *progress)
+{
+  return look == NULL && progress == NULL && dvi_integrator_monitor(integrator) == NULL;
+}
+
 dvi_status march(dvi_integrator *integrator, double h, long steps, double t_end, march_look look,
                  void *user, progress_line *progress, const char *words)
 {
@@ -35,6 +43,8 @@ dvi_status march(dvi_integrator *integrator, double h, long steps, double t_end,
     return dvi_run(
         integrator,
         &(dvi_run_options){.h = h, .t_end = t_end, .observe = march_after_step, .user = &m}, NULL);
+  if (march_is_plain(integrator, look, progress))
+    return dvi_run(integrator, &(dvi_run_options){.h = h, .t_end = t_end}, NULL);
   dvi_status status = DVI_OK;
   for (long i = 0; i < steps && status == DVI_OK; i++) {
     march_show_progress(&m);

@@ -43,80 +43,134 @@ static inline int nbody_potential(const int dimension, int count, const double *
   return 0;
 }
 
-/* Compute the squared distances of all pairs at `lanes` points, [pairs*lanes]. Rows of q are
- * `stride` apart. Returns the number of squares. */
-PROBLEM_INLINE int squared_distances(const int dimension, const int lanes, int stride,
-                                     const double *restrict q, const nbody *own,
-                                     double *restrict r2)
+/* Compute the squared distances of all pairs at one point. Rows of q are `stride` apart. Returns
+ * the number of squares. */
+PROBLEM_INLINE int squared_distances(const int dimension, int stride, const double *restrict q,
+                                     const nbody *own, double *restrict r2)
 {
   const int row = dimension * stride;
   int at = 0;
   for (int a = 0; a < own->bodies; a++)
-    for (int b = a + 1; b < own->bodies; b++, at += lanes)
-      for (int k = 0; k < lanes; k++) {
-        double sum = 0.0;
-        for (int i = 0; i < dimension; i++) {
-          const double d = q[a * row + i * stride + k] - q[b * row + i * stride + k];
-          sum += d * d;
-        }
-        r2[at + k] = sum;
+    for (int b = a + 1; b < own->bodies; b++) {
+      double sum = 0.0;
+      for (int i = 0; i < dimension; i++) {
+        const double d = q[a * row + i * stride] - q[b * row + i * stride];
+        sum += d * d;
       }
+      r2[at++] = sum;
+    }
   return at;
 }
 
 /* Add the pulls of all pairs to one gradient row, and subtract them from the other. */
-PROBLEM_INLINE void nbody_pull(const int dimension, const int lanes, int stride,
-                               const double *restrict q, const nbody *own,
-                               const double *restrict inverse_cube, double *restrict V_q)
+PROBLEM_INLINE void nbody_pull(const int dimension, int stride, const double *restrict q,
+                               const nbody *own, const double *restrict inverse_cube,
+                               double *restrict V_q)
 {
   const int row = dimension * stride;
   for (int a = 0; a < own->bodies; a++)
-    for (int b = a + 1; b < own->bodies; b++, inverse_cube += lanes) {
-      const double weight = own->G * own->mass[a] * own->mass[b];
-      for (int i = 0; i < dimension; i++)
-        for (int k = 0; k < lanes; k++) {
-          const int at_a = a * row + i * stride + k, at_b = b * row + i * stride + k;
-          const double force = weight * inverse_cube[k] * (q[at_a] - q[at_b]);
-          V_q[at_a] += force;
-          V_q[at_b] -= force;
-        }
+    for (int b = a + 1; b < own->bodies; b++) {
+      const double weight = own->G * own->mass[a] * own->mass[b] * *inverse_cube++;
+      for (int i = 0; i < dimension; i++) {
+        const int at_a = a * row + i * stride, at_b = b * row + i * stride;
+        const double force = weight * (q[at_a] - q[at_b]);
+        V_q[at_a] += force;
+        V_q[at_b] -= force;
+      }
     }
 }
 
-PROBLEM_INLINE void nbody_gradient_at(const int dimension, const int lanes, int stride,
-                                      const double *q, double *V_q, const nbody *own)
+/* Compute the gradient at a single point, where pairs take the place of points. */
+PROBLEM_INLINE void nbody_gradient_at_one(const int dimension, int stride, const double *q,
+                                          double *V_q, const nbody *own)
 {
-  double r[NBODY_PAIRS_MAX * 8 + PROBLEM_TILE];
-  const int tile = lanes == 1 ? PROBLEM_TILE / 2 : PROBLEM_TILE; /* six bodies have 15 pairs */
-  const int numbers = squared_distances(dimension, lanes, stride, q, own, r);
+  double r[NBODY_PAIRS_MAX + PROBLEM_TILE];
+  const int tile = PROBLEM_TILE / 2; /* six bodies have 15 pairs */
+  const int numbers = squared_distances(dimension, stride, q, own, r);
   for (int k = numbers; k < numbers + tile; k++) r[k] = 1.0; /* the last tile is computed in full */
   for (int k = 0; k < numbers; k += tile) problem_inverse_cubes(tile, r + k);
-  nbody_pull(dimension, lanes, stride, q, own, r, V_q);
+  for (int i = 0; i < own->bodies * dimension; i++) V_q[i * stride] = 0.0;
+  nbody_pull(dimension, stride, q, own, r, V_q);
+}
+
+/* Numbers at eight points. */
+typedef double eight __attribute__((vector_size(8 * sizeof(double))));
+typedef uint64_t eight_bits __attribute__((vector_size(8 * sizeof(double))));
+
+/* Do what problem_inverse_cubes does. */
+PROBLEM_INLINE void inverse_cube(eight *x)
+{
+  eight y = (eight)(UINT64_C(0x5fe6eb50c7b537a9) - ((eight_bits)*x >> 1)), e = 1.0 - *x * (y * y);
+  y += y * (e * (0.5 + e * (0.375 + e * 0.3125)));
+  e = 1.0 - *x * (y * y);
+  y += y * (e * (0.5 + e * 0.375));
+  *x = y * y * y;
+}
+
+/* The forces of pairs a < b, in [a][b]. */
+typedef eight pair_forces[NBODY_MAX][NBODY_MAX][3];
+
+/* Compute them at eight points, in registers. The processor takes up the next pair before one is
+ * done. Rows are `stride` apart. */
+PROBLEM_INLINE void forces_at_eight(const int dimension, int stride, const double *q,
+                                    const nbody *own, pair_forces force)
+{
+  const int row = dimension * stride;
+  eight at[3], d[3];
+  for (int a = 0; a < own->bodies; a++) {
+    for (int i = 0; i < dimension; i++) memcpy(&at[i], q + a * row + i * stride, sizeof at[i]);
+    for (int b = a + 1; b < own->bodies; b++) {
+      eight cube = {0};
+      for (int i = 0; i < dimension; i++) {
+        memcpy(&d[i], q + b * row + i * stride, sizeof d[i]);
+        d[i] = at[i] - d[i];
+        cube += d[i] * d[i];
+      }
+      inverse_cube(&cube);
+      cube *= own->G * own->mass[a] * own->mass[b];
+      for (int i = 0; i < dimension; i++) force[a][b][i] = cube * d[i];
+    }
+  }
+}
+
+PROBLEM_INLINE void nbody_gradient_at_eight(const int dimension, int stride, const double *q,
+                                            double *V_q, const nbody *own)
+{
+  pair_forces force;
+  forces_at_eight(dimension, stride, q, own, force);
+  for (int c = 0; c < own->bodies; c++) {
+    eight sum[3] = {{0}, {0}, {0}};
+    for (int a = 0; a < c; a++)
+      for (int i = 0; i < dimension; i++) sum[i] -= force[a][c][i];
+    for (int b = c + 1; b < own->bodies; b++)
+      for (int i = 0; i < dimension; i++) sum[i] += force[c][b][i];
+    for (int i = 0; i < dimension; i++)
+      memcpy(V_q + (c * dimension + i) * stride, &sum[i], sizeof sum[i]);
+  }
 }
 
 /* Compute the gradients at fewer than eight points. The last point fills the others. */
-PROBLEM_INLINE void nbody_gradient_of_few(const int dimension, int points, int stride,
+PROBLEM_INLINE void nbody_gradient_at_few(const int dimension, int points, int stride,
                                           const double *q, double *V_q, const nbody *own)
 {
   double filled[24 * NBODY_MAX] = {0}, result[24 * NBODY_MAX] = {0};
   const int n = own->bodies * dimension;
   for (int i = 0; i < n; i++)
     for (int k = 0; k < 8; k++) filled[8 * i + k] = q[i * stride + (k < points ? k : points - 1)];
-  nbody_gradient_at(dimension, 8, 8, filled, result, own);
+  nbody_gradient_at_eight(dimension, 8, filled, result, own);
   for (int i = 0; i < n; i++)
     for (int k = 0; k < points; k++) V_q[i * stride + k] = result[8 * i + k];
 }
 
 /* Compute the gradients at eight points at once. Loops of known length need no preparation, which
- * would cost more than their work. For a single point the pairs take the place of points. */
+ * would cost more than their work. */
 PROBLEM_INLINE int nbody_gradient(const int dimension, int count, const double *q, double *V_q,
                                   const nbody *own)
 {
   int k = 0;
-  for (int j = 0; j < own->bodies * dimension * count; j++) V_q[j] = 0.0;
-  for (; k + 8 <= count; k += 8) nbody_gradient_at(dimension, 8, count, q + k, V_q + k, own);
-  if (count - k > 1) nbody_gradient_of_few(dimension, count - k, count, q + k, V_q + k, own);
-  if (count - k == 1) nbody_gradient_at(dimension, 1, count, q + k, V_q + k, own);
+  for (; k + 8 <= count; k += 8) nbody_gradient_at_eight(dimension, count, q + k, V_q + k, own);
+  if (count - k > 1) nbody_gradient_at_few(dimension, count - k, count, q + k, V_q + k, own);
+  if (count - k == 1) nbody_gradient_at_one(dimension, count, q + k, V_q + k, own);
   return 0;
 }
 

@@ -47,7 +47,6 @@ expect 2 'a path' path free-body --method midpoint --ends initial --steps 4
 says err 'dvi run goes forward' 'path: the remedy'
 expect 2 'project' run spherical-chain --method lie-verlet --project
 says err 'spherical-chain has none' 'what --project is for'
-expect 2 'members' bench free-body --method lie-verlet --scale members=1,2
 
 # Inertias: each in its range, together those of a body.
 expect 2 'no body' run free-body --method lie-verlet --set J1=3.6

@@ -30,7 +30,7 @@ static const place places[] = {
     {"kepler", "e=0.9", "midpoint", 0.03},
     {"kepler", NULL, "sem:degree=2", 0.1},
     {"heavy-top", NULL, "lie-galerkin:degree=2", 0.01},
-    {"tokamak", NULL, "vprk:nodes=2", 50},
+    {"massless-particle", "gauge=singular", "dvrk:nodes=2", 0.1},
 };
 enum { PLACES = sizeof places / sizeof *places };
 

@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "core/status.h"
+#include "solve/certify.h"
 #include "support/equations.h"
 #include "support/suite.h"
 
@@ -213,6 +214,26 @@ START_TEST(a_row_that_is_rounding_is_solved)
 }
 END_TEST
 
+/* The rows are looked at after the first correction, which may be the only one. If it is not, the
+ * next one is of this residual. */
+START_TEST(the_first_correction_may_be_the_last)
+{
+  single_equation equation = {parabola, parabola_slope, 0.5, -HUGE_VAL, 0};
+  solver_bench bench;
+  double x = 1 + 1e-9;
+  create_sum_solver(&equation, &bench);
+  ck_assert_int_eq(solve_by_rung(&bench, DVI__NEWTON, &x), DVI_OK);
+  ck_assert_int_eq(bench.report.iterations, 1);
+  ck_assert_int_eq(equation.residuals, 2);
+  x = 1.5;
+  equation.residuals = 0;
+  ck_assert_int_eq(solve_by_rung(&bench, DVI__NEWTON, &x), DVI_OK);
+  ck_assert_double_eq_tol(x, 1, 2 * DBL_EPSILON);
+  ck_assert_int_eq(equation.residuals, bench.report.iterations);
+  destroy_solver_bench(&bench, NULL);
+}
+END_TEST
+
 /* ---- complex Jacobians ---- */
 
 /* Both rows are (x + y)^2 - 4, whose Jacobian is singular everywhere. */
@@ -271,6 +292,7 @@ typedef struct own_variables {
   double z[2], part;
   dvi_status status;
   int residuals;
+  double moves; /* how far an iteration moves the second variable */
 } own_variables;
 
 static void begin_own(void *of, const double *x)
@@ -280,7 +302,8 @@ static void begin_own(void *of, const double *x)
 
 static dvi_status iterate_own(void *of, double *change, double *largest)
 {
-  const own_variables *own = of;
+  own_variables *own = of;
+  own->z[1] += own->moves;
   *change = 0;
   *largest = fabs(own->z[1]);
   return DVI_OK;
@@ -307,6 +330,18 @@ static dvi_status own_residual(void *of, const double *z, double *r)
   return own->status == DVI_OK ? DVI_OK : dvi__fail(own->status, "asked to fail");
 }
 
+static dvi__equations equations_in(own_variables *own)
+{
+  return (dvi__equations){.unknowns = 1,
+                          .of = own,
+                          .fixed_point_begin = begin_own,
+                          .fixed_point_iterate = iterate_own,
+                          .fixed_point_end = end_own,
+                          .own_unknowns = 2,
+                          .own_point = own_point,
+                          .own_residual = own_residual};
+}
+
 /* KINSOL tests the variables by one residual, and searches no other solution. */
 START_TEST(own_variables_are_certified_by_one_residual)
 {
@@ -320,15 +355,8 @@ START_TEST(own_variables_are_certified_by_one_residual)
                {HUGE_VAL, DVI_OK, DVI_NOT_CONVERGED},
                {0, DVI_CALLBACK_RETRY, DVI_NOT_CONVERGED},
                {0, DVI_CALLBACK_FAILED, DVI_CALLBACK_FAILED}};
-  own_variables own = {{0.25, -3}, cases[_i].part, cases[_i].status, 0};
-  const dvi__equations equations = {.unknowns = 1,
-                                    .of = &own,
-                                    .fixed_point_begin = begin_own,
-                                    .fixed_point_iterate = iterate_own,
-                                    .fixed_point_end = end_own,
-                                    .own_unknowns = 2,
-                                    .own_point = own_point,
-                                    .own_residual = own_residual};
+  own_variables own = {{0.25, -3}, cases[_i].part, cases[_i].status, 0, 0};
+  const dvi__equations equations = equations_in(&own);
   dvi_counters counters = {0};
   dvi__solver *solver;
   dvi__solve_report report;
@@ -347,6 +375,67 @@ START_TEST(own_variables_are_certified_by_one_residual)
 }
 END_TEST
 
+/* A solver that is prepared knows the residual before the last iteration, and evaluates the next
+ * one only if that does not pass, or has been tested already. */
+START_TEST(the_last_iteration_certifies_a_solution)
+{
+  static const struct {
+    double moves, part;
+    int residuals;
+    dvi_status verdict;
+  } cases[] = {{0, 1, 0, DVI_OK},
+               {-1e-12, 1, 0, DVI_OK},
+               {1e-11, 1e-14, 1, DVI_OK},
+               {1e-11, 1e-10, 1, DVI_NOT_CONVERGED}};
+  own_variables own = {{0.25, -3}, cases[_i].part, DVI_OK, 0, cases[_i].moves};
+  const dvi__equations equations = equations_in(&own);
+  dvi_counters counters = {0};
+  dvi__solver *solver;
+  dvi__solve_report report;
+  double x = 0;
+  ck_assert_int_eq(dvi__solver_create(&equations, &counters, &solver), DVI_OK);
+  ck_assert_int_eq(dvi__certify_prepare(solver, 1), DVI_OK);
+  for (int again = 1; again <= 2; again++) {
+    ck_assert_int_eq(dvi__solve(solver, DVI__FIXED_POINT, 1.0, 0, 0, &x, &report), DVI_OK);
+    ck_assert_int_eq(dvi__certify(solver, 1.0, NULL, &report), cases[_i].verdict);
+    ck_assert_int_eq(own.residuals, again * cases[_i].residuals);
+    ck_assert_int_eq(counters.certified, cases[_i].verdict == DVI_OK ? again : 0);
+  }
+  (void)dvi__certify(solver, 1.0, NULL, &report);
+  ck_assert_int_eq(own.residuals, 2 * cases[_i].residuals + 1);
+  dvi__solver_destroy(&solver);
+}
+END_TEST
+
+/* Solutions of different sizes are tested together, and only those that were noted. */
+START_TEST(many_solutions_are_certified_at_once)
+{
+  static const double sizes[] = {1, 1e6, 1e-6};
+  own_variables own = {{0.25, -3}, 0, DVI_OK, 0, 0};
+  const dvi__equations equations = equations_in(&own);
+  dvi_counters counters = {0};
+  dvi__solver *solver;
+  ck_assert_int_eq(dvi__solver_create(&equations, &counters, &solver), DVI_OK);
+  ck_assert_int_eq(dvi__certify_prepare(solver, 3), DVI_OK);
+  for (int spoilt = 0; spoilt < 4; spoilt++) {
+    for (int i = 0; i < 3; i++) {
+      double *point = dvi__certify_point(solver, i);
+      const double next[] = {0.5 * sizes[i], -sizes[i]};
+      point[0] = next[0] * (1 + 1e-13);
+      point[1] = next[1] * (i == spoilt ? 1 + 1e-10 : 1);
+      ck_assert_int_eq(dvi__certify_note(solver, i, next, sizes[i], 1.0), DVI_OK);
+    }
+    const long before = counters.certified;
+    ck_assert_int_eq(dvi__certify_noted(solver, 3), spoilt == 3);
+    ck_assert_int_eq(dvi__certify_noted(solver, 2), spoilt >= 2);
+    ck_assert_int_eq(counters.certified - before, (spoilt == 3 ? 3 : 0) + (spoilt >= 2 ? 2 : 0));
+  }
+  ck_assert_int_eq(dvi__certify_note(solver, 0, (double[]){0, 0}, 1e-320, 1.0), DVI_NOT_FINITE);
+  ck_assert_int_eq(own.residuals, 0);
+  dvi__solver_destroy(&solver);
+}
+END_TEST
+
 SUITE(ladder)
 {
   tcase_add_loop_test(tests, every_rung_finds_the_solution_to_roundoff, 0, 3);
@@ -360,6 +449,9 @@ SUITE(ladder)
   tcase_add_loop_test(tests, a_singular_jacobian_is_a_step_s_failure, 0, 2);
   tcase_add_loop_test(tests, a_start_on_a_critical_point_is_a_failure, 0, 2);
   tcase_add_loop_test(tests, a_row_that_is_rounding_is_solved, 0, 2);
+  tcase_add_test(tests, the_first_correction_may_be_the_last);
   tcase_add_loop_test(tests, shifts_of_singular_jacobians_give_steps_of_least_norm, 0, 2);
   tcase_add_loop_test(tests, own_variables_are_certified_by_one_residual, 0, 7);
+  tcase_add_loop_test(tests, the_last_iteration_certifies_a_solution, 0, 4);
+  tcase_add_test(tests, many_solutions_are_certified_at_once);
 }

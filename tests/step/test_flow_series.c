@@ -18,6 +18,25 @@ static dvi__flow_series *create_series(const problem *model, int degree)
   return series;
 }
 
+/* With a constant mass each evaluation gives two coefficients. */
+START_TEST(forces_are_evaluated_for_two_coefficients_at_a_time)
+{
+  problem *model = create_problem("pendulum", NULL);
+  dvi_counters counters = {0};
+  dvi__flow_series *series;
+  for (int degree = 1; degree <= 6; degree++) {
+    static const long expected[] = {0, 0, 1, 2, 2 + 3, 2 + 4, 2 + 4 + 5};
+    counters.gradients = 0;
+    ck_assert_int_eq(
+        dvi__flow_series_create(model->system, degree, DVI__GRADIENTS, &counters, &series), DVI_OK);
+    ck_assert_int_eq(dvi__flow_series_expand(series, 0, model->q, model->v), DVI_OK);
+    ck_assert_int_eq(counters.gradients, expected[degree]);
+    dvi__flow_series_destroy(&series);
+  }
+  problem_destroy(&model);
+}
+END_TEST
+
 static double sum_of(int degree, size_t stride, const double *series, double s)
 {
   double sum = 0;
@@ -211,6 +230,7 @@ END_TEST
 
 SUITE(flow_series)
 {
+  tcase_add_test(tests, forces_are_evaluated_for_two_coefficients_at_a_time);
   tcase_add_test(tests, an_oscillator_has_the_series_of_the_cosine);
   tcase_add_loop_test(tests, the_sum_is_where_an_integrator_arrives, 0, PLACES);
   tcase_add_loop_test(tests, derivatives_agree_with_differences, 0, PLACES);

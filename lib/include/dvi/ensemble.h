@@ -9,10 +9,12 @@
  *  number of threads and however the members are grouped.
  *
  *  Members side by side are the lanes of vectors, and one batch callback evaluates all their
- *  points. This needs a constant mass, scalar or diagonal, and potentials that give their
- *  gradients. It serves verlet, fixed-point iteration of the implicit methods, and compositions of
- *  both. Everything else goes member by member, as an integrator does. An ensemble serves one
- *  caller at a time. */
+ *  points. The potentials must give their gradients for this, and a general Lagrangian its
+ *  gradient and its Hessian. It serves verlet with a scalar or diagonal mass, fixed-point
+ *  iteration of the implicit methods, lie-verlet for bodies, directions and angles that no mass
+ *  couples, without constraints, and compositions of these. Beside uniform friction the implicit
+ *  methods need solver=fixed-point for it. Everything else goes member by member, as an
+ *  integrator does. An ensemble serves one caller at a time. */
 typedef struct dvi_ensemble dvi_ensemble;
 
 /** Options of an ensemble. Zero means default. */

@@ -99,10 +99,6 @@ void dvi__chart_turning_curvature(const dvi__functions *c, const double *xi, con
 
 /* ---- rotations and spheres under rotations of space, y' = w x y ---- */
 
-/* Compute the rows y x. Row i [stored*3] gives the change of stored number i under w. The rows of v
- * are found likewise. */
-void dvi__chart_turns(dvi__chart_kind kind, const double *y, double *turns);
-
 /* Add the moment, which is defined by a.(w x y) = w.moment. */
 void dvi__chart_add_moment(dvi__chart_kind kind, const double *y, const double *a, double *moment);
 

@@ -19,19 +19,6 @@ static void get_vector(const double *y, int vectors, int j, double *x)
   for (int i = 0; i < 3; i++) x[i] = y[i * vectors + j];
 }
 
-void dvi__chart_turns(dvi__chart_kind kind, const double *y, double *turns)
-{
-  const int vectors = vectors_of(kind);
-  for (int j = 0; j < vectors; j++)
-    for (int k = 0; k < 3; k++) {
-      double x[3], e[3] = {0}, moved[3];
-      e[k] = 1;
-      get_vector(y, vectors, j, x);
-      dvi__cross(e, x, moved);
-      for (int i = 0; i < 3; i++) turns[3 * (i * vectors + j) + k] = moved[i];
-    }
-}
-
 void dvi__chart_add_moment(dvi__chart_kind kind, const double *y, const double *a, double *moment)
 {
   const int vectors = vectors_of(kind);

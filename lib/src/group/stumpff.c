@@ -11,6 +11,9 @@
 #include <math.h>
 #include <string.h>
 
+#include "num/simd/wide.h"
+#include "num/simd/width.h"
+
 #define NEAR 2.5 /* a quarter turn */
 #define FAR 40.0 /* a full turn */
 
@@ -126,4 +129,41 @@ void dvi__stumpff(double s, double c[9])
   } else {
     recur_up(s, 4, 8, c);
   }
+}
+
+/* ---- several arguments ---- */
+
+typedef double lane __attribute__((vector_size(DVI__STUMPFF_LANES * sizeof(double))));
+
+/* The operations are those of sum_stumpff_series. */
+INLINE void sum_series_of(int k, int pairs, const lane *s, lane *sum)
+{
+  const lane square = *s * *s;
+  lane even = {0}, odd = {0};
+  for (int j = 4 * (pairs - 1) + k; j >= k; j -= 4) {
+    even = inverse_factorial[j] + square * even;
+    odd = inverse_factorial[j + 2] + square * odd;
+  }
+  *sum = even - *s * odd;
+}
+
+WIDE static void six_near(const double *s, double *functions)
+{
+  lane x, c[6];
+  memcpy(&x, s, sizeof x);
+  sum_series_of(5, 5, &x, &c[5]);
+  sum_series_of(4, 5, &x, &c[4]);
+  for (int k = 3; k >= 0; k--) c[k] = inverse_factorial[k] - x * c[k + 2];
+  memcpy(functions, c, sizeof c);
+}
+
+void dvi__stumpff_six_of(const double s[DVI__STUMPFF_LANES], double c[6][DVI__STUMPFF_LANES])
+{
+  six_near(s, c[0]);
+  for (int k = 0; k < DVI__STUMPFF_LANES; k++)
+    if (!(s[k] <= NEAR)) {
+      double one[6];
+      dvi__stumpff_six(s[k], one);
+      for (int i = 0; i < 6; i++) c[i][k] = one[i];
+    }
 }

@@ -21,4 +21,8 @@ void dvi__stumpff_four(double s, double c[4]);
  * recurrence. */
 void dvi__stumpff_six(double s, double c[6]);
 
+/* Compute the first six of several arguments side by side, with the same digits. */
+enum { DVI__STUMPFF_LANES = 4 };
+void dvi__stumpff_six_of(const double s[DVI__STUMPFF_LANES], double c[6][DVI__STUMPFF_LANES]);
+
 #endif

@@ -6,6 +6,7 @@
 
 #include "core/status.h"
 #include "integrator/ensemble_struct.h"
+#include "method/damping.h"
 #include "num/finite.h"
 
 /* A member that is left out goes on alone for one step, and for twice as many each time that it is
@@ -125,7 +126,7 @@ static void step_block_lanes(const dvi_ensemble *e, dvi__worker *w, const dvi__b
   memset(m->residuals, 0, count * sizeof(long));
   memset(m->gradients, 0, count * sizeof(long));
   memset(m->fixed, 0, count * sizeof(long));
-  w->integrator->stepper.method->step_lanes(&w->integrator->stepper, m, e->task.h);
+  dvi__take_step_lanes(&w->integrator->stepper, m, e->task.h);
   leave_not_finite(e, m);
   accept_lanes(e, w, block);
 }

@@ -213,7 +213,7 @@ static dvi_status check_state(const dvi_integrator *I)
   return dvi__lagrangian_admit(I->evaluator, I->next.t, I->next.q);
 }
 
-static void accept_step(dvi_integrator *I, double h)
+void dvi__integrator_accept(dvi_integrator *I, double h)
 {
   const dvi__state oldest = I->last;
   I->last = I->now;
@@ -230,7 +230,7 @@ static void accept_step(dvi_integrator *I, double h)
   I->counters.steps++;
 }
 
-static void exchange_memory(dvi_integrator *I)
+void dvi__exchange_memory(dvi_integrator *I)
 {
   double *memory = I->stepper.memory;
   I->stepper.memory = I->memory_before;
@@ -257,7 +257,7 @@ void dvi__integrator_smooth_back(dvi_integrator *I)
   I->last_h = I->last_h_before;
   I->counters.steps--;
   if (I->monitored != NULL) I->monitored->expanded = 0;
-  exchange_memory(I);
+  dvi__exchange_memory(I);
 }
 
 dvi_status dvi__integrator_undo(dvi_integrator *I, dvi_status status)
@@ -269,7 +269,7 @@ dvi_status dvi__integrator_undo(dvi_integrator *I, dvi_status status)
 
 static dvi_status refuse_step(dvi_integrator *I, double h, dvi_status status)
 {
-  exchange_memory(I);
+  dvi__exchange_memory(I);
   I->counters.failed_steps++;
   return dvi__fail_in(status, "%s: step %ld from t = %.9g with h = %.3g failed%s",
                       I->stepper.method->name, I->counters.steps + 1, I->now.t, h,
@@ -298,6 +298,9 @@ static dvi_status advance_state(dvi_integrator *I, double h)
   DVI_TRY(dvi__integrator_find_side(I));
   DVI_TRY(dvi__control_begin(I, h, &length));
   const double density = I->next.density;
+  /* a method with a pass takes no forces, which supply something */
+  if (method->pass != NULL && I->balances > 0)
+    memcpy(I->next.supplied, I->now.supplied, 2 * I->balances * sizeof(double));
   if (method->pass != NULL &&
       method->pass(&I->stepper, &I->now, I->memory_before, &I->next, &length, 1) &&
       isfinite(I->next.t))
@@ -322,42 +325,13 @@ dvi_status dvi_integrator_step(dvi_integrator *I, double h)
 
 dvi_status dvi__integrator_smooth_step(dvi_integrator *I, double h)
 {
-  exchange_memory(I);
+  dvi__exchange_memory(I);
   const long before = dvi__allocation_count();
   const dvi_status status = advance_state(I, h);
   I->counters.allocations += dvi__allocation_count() - before;
   if (status != DVI_OK) return refuse_step(I, h, status);
-  accept_step(I, I->stepper.method->chooses_steps ? I->stepper.taken : h);
+  dvi__integrator_accept(I, I->stepper.method->chooses_steps ? I->stepper.taken : h);
   return DVI_OK;
-}
-
-/* Nothing but the method may have a part in these steps. */
-static int can_step_together(const dvi_integrator *I, double h)
-{
-  return I->stepper.method->pass != NULL && I->monitored == NULL && I->balances == 0 &&
-         I->system->dynamics->constraint == NULL && !dvi__hits_divide(I) &&
-         !dvi_integrator_chooses_steps(I) && dvi__check_step(I->now.t, h) == DVI_OK &&
-         dvi__stepper_check_step(&I->stepper, h) == DVI_OK;
-}
-
-long dvi__integrator_steps(dvi_integrator *I, double h, long count)
-{
-  enum { MOST = 32 }; /* more would hardly save time */
-  double length[MOST];
-  const int steps = count < MOST ? (int)count : MOST;
-  if (!can_step_together(I, h)) return 0;
-  for (int i = 0; i < steps; i++) length[i] = h;
-  exchange_memory(I);
-  I->next.density = I->now.density;
-  I->next.side = I->now.side;
-  if (!I->stepper.method->pass(&I->stepper, &I->now, I->memory_before, &I->next, length, steps) ||
-      !isfinite(I->next.t) || I->next.t + h == I->next.t) {
-    exchange_memory(I);
-    return 0;
-  }
-  accept_step(I, h * steps);
-  I->counters.steps += steps - 1;
-  return steps;
 }
 
 dvi_status dvi__integrator_step_exactly(dvi_integrator *I, double h)

@@ -74,10 +74,10 @@ dvi_status dvi__check_step(double t, double h);
 /* Take one step of the method, without a look at contacts, and take it back. */
 dvi_status dvi__integrator_smooth_step(dvi_integrator *integrator, double h);
 
-/* Take up to `count` steps in one pass of the method, with the bits of as many single steps.
- * Returns their number, or 0 if nothing changed, because the method has no such pass or a step
- * fails. They count as one last step, which is not to be taken back. */
-long dvi__integrator_steps(dvi_integrator *integrator, double h, long count);
+/* Take up to `count` steps, as many as possible in one pass or march of the method, with the bits
+ * of single steps. Gives their number, also if a step fails. The last step, or all of a pass, is
+ * not to be taken back. */
+dvi_status dvi__integrator_steps(dvi_integrator *integrator, double h, long count, long *taken);
 void dvi__integrator_smooth_back(dvi_integrator *integrator);
 
 /* Evaluate q [nq] and v [nv] at tau in [0,1] of the last smooth step. Either may be NULL. */
@@ -114,6 +114,12 @@ const dvi_system *dvi__declared_system(const dvi_integrator *integrator);
 
 /* Take a step of exactly h, the rest of a run, also by methods that choose their steps. */
 dvi_status dvi__integrator_step_exactly(dvi_integrator *integrator, double h);
+
+/* Make `next` the present state, after a step of h. */
+void dvi__integrator_accept(dvi_integrator *integrator, double h);
+
+/* Exchange the stepper's memory and that before the step. */
+void dvi__exchange_memory(dvi_integrator *integrator);
 
 /* Take the last step back. Allowed once a step. */
 void dvi__integrator_take_back(dvi_integrator *integrator);

@@ -46,9 +46,9 @@ static dvi_status mechanics_advance(void *of, double h, double t_end, double tol
   return dvi__integrator_step_exactly(I, left);
 }
 
-static long mechanics_advance_together(void *of, double h, long count)
+static dvi_status mechanics_advance_together(void *of, double h, long count, long *taken)
 {
-  return dvi__integrator_steps(((const mechanics *)of)->integrator, h, count);
+  return dvi__integrator_steps(((const mechanics *)of)->integrator, h, count, taken);
 }
 
 static void mechanics_take_back(void *of)
@@ -152,23 +152,32 @@ static dvi_status check_run_events(const dvi_run_options *options)
 
 /* ---- a run ---- */
 
+/* Tell whether steps may be taken together. Only in a pass they are if the run may be cancelled. */
+static int can_advance_together(const mechanics *m)
+{
+  const dvi_integrator *I = m->integrator;
+  return I->stepper.method->pass != NULL ||
+         (I->monitored == NULL && !dvi_integrator_chooses_steps(I) && m->options->cancel == NULL);
+}
+
 static dvi_status mechanics_run(mechanics *m, dvi_run_report *report)
 {
   const dvi_integrator *I = m->integrator;
   const dvi_run_options *given = m->options;
-  const dvi__marcher marcher = {.time = mechanics_time,
-                                .left = mechanics_time_left,
-                                .steps = mechanics_steps,
-                                .advance = mechanics_advance,
-                                .advance_together = mechanics_advance_together,
-                                .take_back = mechanics_take_back,
-                                .reject = mechanics_reject,
-                                .event = mechanics_event,
-                                .value = event_value_on_path,
-                                .value_at_start = event_value_at_start,
-                                .occurred = event_occurred,
-                                .observe = given->observe != NULL ? mechanics_observe : NULL,
-                                .save = mechanics_save};
+  const dvi__marcher marcher = {
+      .time = mechanics_time,
+      .left = mechanics_time_left,
+      .steps = mechanics_steps,
+      .advance = mechanics_advance,
+      .advance_together = can_advance_together(m) ? mechanics_advance_together : NULL,
+      .take_back = mechanics_take_back,
+      .reject = mechanics_reject,
+      .event = mechanics_event,
+      .value = event_value_on_path,
+      .value_at_start = event_value_at_start,
+      .occurred = event_occurred,
+      .observe = given->observe != NULL ? mechanics_observe : NULL,
+      .save = mechanics_save};
   const dvi__march_options options = {.h = given->h,
                                       .t_end = given->t_end,
                                       .chooses_steps = dvi_integrator_chooses_steps(I),

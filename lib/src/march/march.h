@@ -49,9 +49,9 @@ typedef struct dvi__marcher {
   /* Write the state to a file. */
   dvi_status (*save)(const void *of, const char *path);
 
-  /* Take up to `count` steps of h in one pass through memory, and return their number, or 0 if
-   * that is not possible. An ordinary step of h must follow. NULL if it never is possible. */
-  long (*advance_together)(void *of, double h, long count);
+  /* Take up to `count` steps of h with nothing between them, perhaps in one pass through memory,
+   * and give their number. An ordinary step of h must follow. NULL if that is never possible. */
+  dvi_status (*advance_together)(void *of, double h, long count, long *taken);
 } dvi__marcher;
 
 typedef struct dvi__march_options {

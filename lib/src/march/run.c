@@ -155,10 +155,14 @@ static long steps_unobserved(const march *m, double h)
   return count - 1;
 }
 
-static void march_together(march *m, double h)
+static dvi_status march_together(march *m, double h)
 {
   const long count = m->marcher->advance_together != NULL ? steps_unobserved(m, h) : 0;
-  if (count > 1) m->report->steps += m->marcher->advance_together(m->of, h, count);
+  long taken = 0;
+  if (count <= 1) return DVI_OK;
+  const dvi_status status = m->marcher->advance_together(m->of, h, count, &taken);
+  m->report->steps += taken;
+  return status;
 }
 
 static dvi_status march_all_steps(march *m)
@@ -166,7 +170,7 @@ static dvi_status march_all_steps(march *m)
   const double t_end = m->options->t_end;
   DVI_TRY(march_observe(m));
   for (double h = next_step(m, t_end); h != 0 && !m->stop; h = next_step(m, t_end)) {
-    march_together(m, h);
+    DVI_TRY(march_together(m, h));
     DVI_TRY(march_one_step(m, h));
   }
   return DVI_OK;

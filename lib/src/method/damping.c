@@ -20,6 +20,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "num/compensated.h"
+#include "num/simd/fused.h"
 
 struct dvi__damping {
   dvi__evaluator *evaluator;
@@ -67,22 +68,27 @@ static dvi_status damped_invariant(const dvi__stepper *self, const dvi__state *s
 }
 
 /* Multiply p and its compensation by f. The rounding error of the product joins the latter. */
-static void scale_momentum(const dvi__stepper *self, dvi__state *state, double f)
+FUSED static void scale_momenta(size_t count, double f, double *restrict p,
+                                double *restrict compensation)
 {
-  for (int i = 0; i < self->system->nv; i++) {
-    const double p = f * state->p[i], error = fma(f, state->p[i], -p);
-    state->p_compensation[i] = f * state->p_compensation[i] - error;
-    state->p[i] = p;
+  for (size_t i = 0; i < count; i++) {
+    const double product = f * p[i], error = __builtin_fma(f, p[i], -product);
+    compensation[i] = f * compensation[i] - error;
+    p[i] = product;
   }
+}
+
+static double half_factor(const dvi__stepper *self, double h)
+{
+  return exp(-0.5 * self->system->damping * h);
 }
 
 static dvi_status damping_half(const dvi__stepper *self, dvi__state *state, double h)
 {
   const struct dvi__damping *own = self->damping;
-  const double f = exp(-0.5 * self->system->damping * h);
   const int count = state->supplied != NULL ? 1 + self->system->symmetry_count : 0;
   for (int i = 0; i < count; i++) DVI_TRY(damped_invariant(self, state, i, &own->before[i]));
-  scale_momentum(self, state, f);
+  scale_momenta((size_t)self->system->nv, half_factor(self, h), state->p, state->p_compensation);
   for (int i = 0; i < count; i++) {
     double after;
     DVI_TRY(damped_invariant(self, state, i, &after));
@@ -98,4 +104,13 @@ dvi_status dvi__take_step(dvi__stepper *self, dvi__state *state, double h)
   DVI_TRY(damping_half(self, state, h));
   DVI_TRY(self->method->step(self, state, h));
   return damping_half(self, state, h);
+}
+
+void dvi__take_step_lanes(dvi__stepper *self, dvi__members *m, double h)
+{
+  const size_t count = (size_t)self->system->nv * (size_t)m->count;
+  const double f = self->damping != NULL ? half_factor(self, h) : 1;
+  if (self->damping != NULL) scale_momenta(count, f, m->p, m->p_compensation);
+  self->method->step_lanes(self, m, h);
+  if (self->damping != NULL) scale_momenta(count, f, m->p, m->p_compensation);
 }

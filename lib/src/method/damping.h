@@ -12,4 +12,7 @@ void dvi__damping_destroy(dvi__stepper *self);
  * driver discards state and memory. */
 dvi_status dvi__take_step(dvi__stepper *self, dvi__state *state, double h);
 
+/* Do so with members side by side. */
+void dvi__take_step_lanes(dvi__stepper *self, dvi__members *members, double h);
+
 #endif

@@ -114,6 +114,7 @@ typedef struct dvi__stepper {
   /* the largest product of a step and a frequency that is stable, 0 if there is no bound. `create`
    * sets it, and the driver refuses longer steps for the frequencies that a system declares */
   double stable;
+  int marches;       /* create sets it if `march` takes steps of the system */
   int late_hessians; /* the step may ask for Hessians that create has not asked for */
   int follows;       /* the step solves equations and can follow their branch from h = 0 */
   /* set by the driver: follow the branch in at least this many parts (default 0, no following) */
@@ -187,6 +188,11 @@ struct dvi__method {
    * and names the failure. NULL if the method has no such pass. */
   int (*pass)(dvi__stepper *self, const dvi__state *now, const double *before, dvi__state *next,
               const double *h, int count);
+  /* Take up to `count` steps of length h one after the other, with the bits of `step`, as long as
+   * each is sure to be accepted. Advances `state` and the stepper's memory, and puts the state
+   * before the last of several steps, without compensations, into `last`. Returns the number of
+   * steps taken. After 0 state and memory may hold anything. May be NULL. */
+  int (*march)(dvi__stepper *self, dvi__state *state, dvi__state *last, double h, int count);
   /* Bytes that a pass moves (dvi_integrator_traffic), or 0 without a pass with these settings. NULL
    * if not known. */
   double (*traffic)(const dvi__stepper *self, int count);
@@ -213,7 +219,7 @@ struct dvi__method {
   /* Step members as lanes. All three functions are NULL if the method has no lanes. prepare_lanes
    * allocates `lanes` for up to `capacity` members, if the system allows lanes and they are faster.
    * step_lanes advances all members that are not `left`, each with the bits and the counts of
-   * `step`, or marks members as `left`. */
+   * `step`, or marks members as `left`. It is called by dvi__take_step_lanes (damping.h). */
   dvi_status (*prepare_lanes)(dvi__stepper *self, int capacity);
   void (*clear_lanes)(dvi__stepper *self);
   void (*step_lanes)(dvi__stepper *self, dvi__members *members, double h);
@@ -243,7 +249,7 @@ dvi_status dvi__stepper_create_inner(dvi__stepper *self, const char *method,
 dvi_status dvi__stepper_check_step(const dvi__stepper *stepper, double h);
 
 /* Let a stepper serve up to `capacity` members side by side. `lanes` stays NULL if the method
- * cannot do this, or the system is damped. Called once. */
+ * cannot do this. Called once. */
 dvi_status dvi__stepper_prepare_lanes(dvi__stepper *stepper, int capacity);
 
 /* Parse a specification (settings.c). The caller clears the settings, whatever the status. */

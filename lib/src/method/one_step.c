@@ -42,8 +42,9 @@ dvi_status dvi__one_step_create(dvi__stepper *self, size_t size, const dvi__step
   one->kind = kind;
   one->of = of;
   one->last = DVI__CARRIED + carried;
-  self->memory_count = one->last + one_step_unknowns(one) +
-                       dvi__predictor_memory(one_step_unknowns(one));
+  one->equations.ladder = one->last + one_step_unknowns(one) +
+                          dvi__predictor_memory(one_step_unknowns(one));
+  self->memory_count = one->equations.ladder + DVI__LADDER;
   if (!one_step_allocate(one, (size_t)self->system->n))
     return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
   /* Coefficients of several kinds of functions have no common unit for each coordinate. */
@@ -55,9 +56,18 @@ dvi_status dvi__one_step_create(dvi__stepper *self, size_t size, const dvi__step
       .of = of,
       .residual = kind->residual,
       .jacobian = kind->jacobian,
+      .invert = kind->invert,
+      .correct = kind->correct,
+      .fill = kind->fill,
       .row_scale = kind->row_scale,
       .renewed = kind->renewed,
       .ahead = kind->renewed || (!kind->inexact && dvi__hessian_noise(self->system) == 0)};
+  if (kind->has_iteration != NULL && kind->has_iteration(of)) {
+    equations.fixed_point_begin = kind->fixed_point_begin;
+    equations.fixed_point_iterate = kind->fixed_point_iterate;
+    equations.fixed_point_end = kind->fixed_point_end;
+    equations.fixed_point_frozen = kind->fixed_point_frozen;
+  }
   DVI_TRY(dvi__stationary_create(self, &equations, &one->equations));
   one->x = one->equations.x;
   /* Do not follow the branch for functions that change with h, and for steps over many periods. The
@@ -104,10 +114,15 @@ static dvi_status one_step_guess(dvi__stepper *self, double h, double *x)
 
 dvi_status dvi__one_step_solve(dvi__stepper *self, const dvi__state *state, double h)
 {
-  const dvi__one_step *one = self->own;
+  dvi__one_step *one = self->own;
   const dvi__stationary_step step = {
       .stepper = self, .state = state, .h = h, .place = one->kind->place, .guess = one_step_guess};
   return dvi__stationary_solve(&one->equations, &step);
+}
+
+int dvi__one_step_is_iterated(const dvi__stepper *self)
+{
+  return ((const dvi__one_step *)self->own)->equations.iterated;
 }
 
 dvi_status dvi__one_step_momentum(dvi__stepper *self, const dvi__state *state, double part,
@@ -155,5 +170,8 @@ void dvi__one_step_explain(const dvi__stepper *self, dvi__text *text)
       pattern->columns, dvi__pattern_entries(pattern),
       100.0 * dvi__pattern_entries(pattern) / pattern->columns / pattern->columns);
   one->kind->explain(self, text);
-  dvi__text_add(text, "solver: Newton's method, last a path followed from shorter steps\n");
+  dvi__text_add(text, "solver: %sNewton's method, last a path followed from shorter steps\n",
+                one->equations.has_iteration
+                    ? "fixed point while it contracts by 0.45 or better, else "
+                    : "");
 }

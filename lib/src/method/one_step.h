@@ -13,13 +13,17 @@
 
 /* The memory starts with the length of the last step (0 before the first step). The carried numbers
  * of the method follow. Behind them is what the guess continues, as many numbers as unknowns.
- * Before the first step the velocity of the start stands there. The last part is that of the
- * predictor. */
+ * Before the first step the velocity of the start stands there. The predictor's numbers and
+ * DVI__LADDER numbers come last. */
 enum { DVI__LENGTH, DVI__CARRIED };
 
 typedef struct dvi__step_kind {
   dvi_status (*residual)(void *of, const double *x, double *R);
   dvi_status (*jacobian)(void *of, const double *x, double *values);
+  /* The Jacobian in parts, as in dvi__equations; NULL if it is a matrix alone */
+  dvi_status (*invert)(void *of, const double *x, int *inverted);
+  void (*correct)(void *of, double *r);
+  void (*fill)(void *of, double *values);
   dvi_status (*row_scale)(void *of, double *scale, int *unchanged);
   void (*straight)(const void *of, const double *v, double *x);
   void (*continued)(void *of, double ratio, const double *last, double *x);
@@ -32,6 +36,13 @@ typedef struct dvi__step_kind {
   /* The time that passes in the step with the solution x, for kinds that accept time-transformed
    * systems. NULL selects h. */
   dvi_status (*duration)(void *of, const double *x, double *duration);
+  /* Fixed point iteration, as the members of dvi__equations with these names (nonlinear.h), for the
+   * steps that `has_iteration` accepts. NULL if there is none. */
+  int (*has_iteration)(const void *of);
+  void (*fixed_point_begin)(void *of, const double *x);
+  dvi_status (*fixed_point_iterate)(void *of, double *change, double *largest);
+  void (*fixed_point_end)(void *of, double *x);
+  int fixed_point_frozen;
   /* Newton's method factors each Jacobian, because forces cost more than factors, and the step
    * corrects increments from the last point */
   int renewed;
@@ -59,6 +70,9 @@ dvi_status dvi__one_step_create(dvi__stepper *self, size_t size, const dvi__step
  * velocity at the start. Later guesses continue the remembered numbers. */
 dvi_status dvi__one_step_solve(dvi__stepper *self, const dvi__state *state, double h);
 
+/* Tell whether the last solution is that of fixed point iteration. */
+int dvi__one_step_is_iterated(const dvi__stepper *self);
+
 /* The momentum [n] from which a part of the step starts. Where a method leaves p = alpha(q), the
  * distance from alpha(q) belongs to the length of the steps, and is scaled with the part. Without
  * this scaling there would be no velocities. */
@@ -79,6 +93,23 @@ void dvi__one_step_explain(const dvi__stepper *self, dvi__text *text);
 
 #define DVI__ONE_STEP_OPERATIONS \
   .destroy = dvi__one_step_destroy, .start = dvi__one_step_start, .explain = dvi__one_step_explain
+
+/* Define the parts of the Jacobian of a step whose functions are dvi__foo_..., which are further
+ * members of its kind. */
+#define DVI__STEP_PARTS(foo)                                            \
+  static dvi_status invert_of(void *of, const double *x, int *inverted) \
+  {                                                                     \
+    return dvi__##foo##_invert(of, x, inverted);                        \
+  }                                                                     \
+  static void correct_of(void *of, double *r)                           \
+  {                                                                     \
+    dvi__##foo##_correct(of, r);                                        \
+  }                                                                     \
+  static void fill_of(void *of, double *values)                         \
+  {                                                                     \
+    dvi__##foo##_fill(of, values);                                      \
+  }
+#define DVI__STEP_PART_MEMBERS .invert = invert_of, .correct = correct_of, .fill = fill_of
 
 /* Define `kind` for a step whose functions are dvi__foo_..., with the functions `place` and
  * `explain`. Further members may follow. */
@@ -127,5 +158,29 @@ void dvi__one_step_explain(const dvi__stepper *self, dvi__text *text);
                                       .destroy = destroy_of,                      \
                                       .place = placed,                            \
                                       .explain = __VA_ARGS__}
+
+/* Define the functions of a kind's iteration, dvi__foo_has_iteration, _begin, _iterate and _finish,
+ * and give the entries for them in DVI__STEP_KIND. */
+#define DVI__STEP_ITERATION(foo)                                          \
+  static int has_iteration_of(const void *of)                             \
+  {                                                                       \
+    return dvi__##foo##_has_iteration(of);                                \
+  }                                                                       \
+  static void begin_of(void *of, const double *x)                         \
+  {                                                                       \
+    dvi__##foo##_begin(of, x);                                            \
+  }                                                                       \
+  static dvi_status iterate_of(void *of, double *change, double *largest) \
+  {                                                                       \
+    return dvi__##foo##_iterate(of, change, largest);                     \
+  }                                                                       \
+  static void finish_of(void *of, double *x)                              \
+  {                                                                       \
+    dvi__##foo##_finish(of, x);                                           \
+  }
+
+#define DVI__STEP_ITERATES                                          \
+  .has_iteration = has_iteration_of, .fixed_point_begin = begin_of, \
+  .fixed_point_iterate = iterate_of, .fixed_point_end = finish_of
 
 #endif

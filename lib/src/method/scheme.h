@@ -9,9 +9,11 @@
 enum { DVI__SUBSTEPS_MOST = 17 };
 
 /* The weights are the first half of the parts and the middle one. The others follow by symmetry.
- * `lengths` counts the distinct parts. */
+ * `lengths` counts the distinct parts. Steps of Verlet's method on q'' = -omega^2 q are stable for
+ * h omega up to `stable`, rounded down to a thousandth. */
 typedef struct dvi__scheme {
   int order, substeps, lengths;
+  double stable;
   double weight[(DVI__SUBSTEPS_MOST + 1) / 2];
 } dvi__scheme;
 
@@ -22,5 +24,8 @@ const dvi__scheme *dvi__scheme_at(int index);
 
 /* The part g of substep i, counted from 0. */
 double dvi__scheme_part(const dvi__scheme *scheme, int i);
+
+/* The lengths of the substeps of a step of h. */
+void dvi__scheme_lengths(const dvi__scheme *scheme, double h, double *length);
 
 #endif

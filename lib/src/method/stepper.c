@@ -225,7 +225,7 @@ dvi_status dvi__inner_step(dvi__stepper *self, dvi__stepper *inner, dvi__state *
 
 dvi_status dvi__stepper_prepare_lanes(dvi__stepper *stepper, int capacity)
 {
-  if (stepper->method->prepare_lanes == NULL || stepper->system->damping > 0) return DVI_OK;
+  if (stepper->method->prepare_lanes == NULL) return DVI_OK;
   return stepper->method->prepare_lanes(stepper, capacity);
 }
 

@@ -21,7 +21,7 @@
 #include "num/factor.h"
 #include "num/supernodal/supernodes.h"
 
-/* Operations for each entry of L from which on dense blocks are faster. */
+/* Operations for each entry of L beyond which dense blocks are faster. */
 enum { DENSE_FROM = 40 };
 
 typedef struct definite {
@@ -117,8 +117,8 @@ static dvi_status ldl_analyse(definite *f, const dvi__pattern *A)
   DVI_TRY(ldl_lay_out(f, (size_t)n));
   if (amd_order(n, A->start, A->row, f->order, NULL, NULL) != AMD_OK) return refuse_memory(n);
   count_columns(f, A);
-  DVI_TRY(count_operations(f, n) < DENSE_FROM * (double)f->start[n] ? make_columns(f, n)
-                                                                    : make_blocks(f, A));
+  DVI_TRY(count_operations(f, n) > DENSE_FROM * (double)f->start[n] ? make_blocks(f, A)
+                                                                    : make_columns(f, n));
   for (int k = 0; k < n; k++) f->diagonal[k] = dvi__pattern_find(A, f->order[k], f->order[k]);
   return DVI_OK;
 }

@@ -20,7 +20,10 @@
 struct dvi__kinsol {
   dvi__solver *solver;
   int unknowns;
-  int own; /* the unknowns are the equations' own variables, which are only tested */
+  /* the unknowns are the equations' own variables, which are only tested, of so many solutions */
+  int own;
+  double *known; /* [unknowns] residuals that are known, in own variables */
+  int is_known;  /* they are tested now */
   SUNContext context;
   void *memory;
   N_Vector x, x_scale, r_scale;
@@ -52,6 +55,10 @@ static int not_finite(const dvi__kinsol *k, N_Vector x)
 static dvi_status evaluate_residual(const dvi__kinsol *k, const double *x, double *r)
 {
   const dvi__equations *equations = &k->solver->equations;
+  if (k->is_known) {
+    memcpy(r, k->known, (size_t)k->unknowns * sizeof(double));
+    return DVI_OK;
+  }
   if (!k->own) return dvi__solver_residual(k->solver, x, r);
   k->solver->counters->residuals++;
   return equations->own_residual(equations->of, x, r);
@@ -140,7 +147,9 @@ static int kinsol_create_vectors(dvi__kinsol *k)
   k->r_scale = kinsol_new_vector(k);
   k->row_scale = DVI_NEW(double, k->unknowns);
   if (k->x_scale != NULL) dvi__vector_is_constant(k->x_scale);
-  return k->x != NULL && k->x_scale != NULL && k->r_scale != NULL && k->row_scale != NULL;
+  if (k->own > 0) k->known = DVI_NEW(double, k->unknowns);
+  return k->x != NULL && k->x_scale != NULL && k->r_scale != NULL && k->row_scale != NULL &&
+         (k->own == 0 || k->known != NULL);
 }
 
 /* KINSOL accepts a guess whose scaled norm is a hundredth of its tolerance. Roundings of the rows
@@ -164,14 +173,17 @@ dvi_status dvi__kinsol_create(dvi__solver *solver, int own, dvi__kinsol **kinsol
   if (k == NULL) return dvi__fail(DVI_NO_MEMORY, "KINSOL: no memory");
   k->solver = solver;
   k->own = own;
-  k->unknowns = own ? solver->equations.own_unknowns : solver->equations.unknowns;
+  k->unknowns = own ? own * solver->equations.own_unknowns : solver->equations.unknowns;
   if (dvi__sundials_context(&k->context) == 0 && kinsol_create_vectors(k) &&
-      kinsol_create_matrix(k) && kinsol_configure(k))
+      kinsol_create_matrix(k) && kinsol_configure(k)) {
+    N_VConst(0, k->x);
+    N_VConst(1, k->x_scale);
     return DVI_OK;
+  }
   dvi__kinsol_destroy(kinsol);
   /* Only memory can be missing, because all arguments are valid. */
   return dvi__fail(DVI_NO_MEMORY, "KINSOL: no memory for %d unknowns",
-                   own ? solver->equations.own_unknowns : solver->equations.unknowns);
+                   own ? own * solver->equations.own_unknowns : solver->equations.unknowns);
 }
 
 void dvi__kinsol_destroy(dvi__kinsol **kinsol)
@@ -186,6 +198,7 @@ void dvi__kinsol_destroy(dvi__kinsol **kinsol)
   if (k->r_scale != NULL) N_VDestroy(k->r_scale);
   if (k->context != NULL) SUNContext_Free(&k->context);
   dvi__release(k->row_scale);
+  dvi__release(k->known);
   dvi__release(k);
   *kinsol = NULL;
 }
@@ -217,25 +230,49 @@ static double power_above(double x)
   return exponent < DBL_MAX_EXP ? ldexp(1.0, exponent) : x;
 }
 
-/* Set the scales of both norms in units of the unknowns' size, to a factor of 2, which seldom
- * changes. A residual row over row_scale is a change of an unknown. */
+/* Give the size to a factor of 2, which seldom changes from the last one. */
+static double size_to_a_power(double last, double whole)
+{
+  return whole >= 0.5 * last && whole < last ? last : power_above(whole);
+}
+
+/* KINSOL would call this a fault of its caller, but a smaller step may have a finite path. */
+static dvi_status fail_to_scale(double whole)
+{
+  return dvi__fail(DVI_NOT_FINITE,
+                   "the guess of the path is too large or too small to be scaled (size %g)", whole);
+}
+
+/* Set the scales of own variables, whose residual is a change of a variable. The row scales, which
+ * they do not need, hold the size of each solution. */
+static dvi_status scale_solution(dvi__kinsol *k, int i, double whole)
+{
+  const int numbers = k->solver->equations.own_unknowns;
+  double *restrict scale = NV_DATA_S(k->x_scale) + i * numbers;
+  whole = size_to_a_power(k->row_scale[i], whole);
+  if (whole == k->row_scale[i]) return DVI_OK;
+  k->row_scale[i] = 1 / whole > 0 && 1 / whole <= DBL_MAX ? whole : 0;
+  if (k->row_scale[i] == 0) return fail_to_scale(whole);
+  for (int j = 0; j < numbers; j++) scale[j] = 1 / whole;
+  return DVI_OK;
+}
+
+/* Set the scales of both norms in units of the unknowns' size. A residual row over row_scale is a
+ * change of an unknown. */
 static dvi_status set_scales(dvi__kinsol *k, double size, const double *x)
 {
   double whole = k->own ? k->solver->whole : dvi__largest((size_t)k->unknowns, x);
+  int unchanged = 0;
   if (whole == 0) whole = size > 0 ? size : 1;
-  whole = whole >= 0.5 * k->whole && whole < k->whole ? k->whole : power_above(whole);
-  /* a row of the own variables' residual is a change of a variable */
-  int unchanged = k->own;
-  if (!k->own)
-    DVI_TRY(k->solver->equations.row_scale(k->solver->equations.of, k->row_scale, &unchanged));
+  if (k->own) return scale_solution(k, 0, whole);
+  whole = size_to_a_power(k->whole, whole);
+  DVI_TRY(k->solver->equations.row_scale(k->solver->equations.of, k->row_scale, &unchanged));
   if (unchanged && whole == k->whole) return DVI_OK;
   k->whole = whole;
   N_VConst(1 / whole, k->x_scale);
-  if ((k->own || invert_rows(k)) && 1 / whole > 0 && 1 / whole <= DBL_MAX) return DVI_OK;
+  if (invert_rows(k) && 1 / whole > 0 && 1 / whole <= DBL_MAX) return DVI_OK;
   k->whole = 0;
-  /* KINSOL would call this a fault of its caller, but a smaller step may have a finite path. */
-  return dvi__fail(DVI_NOT_FINITE,
-                   "the guess of the path is too large or too small to be scaled (size %g)", whole);
+  return fail_to_scale(whole);
 }
 
 dvi_status dvi__kinsol_certify(dvi__kinsol *k, double size, const double *x, int *certified,
@@ -250,6 +287,30 @@ dvi_status dvi__kinsol_certify(dvi__kinsol *k, double size, const double *x, int
   if (!k->own) (void)KINSetFuncNormTol(k->memory, tolerance);
   (void)KINGetFuncNorm(k->memory, &report->residual);
   return k->fatal;
+}
+
+double *dvi__kinsol_point(dvi__kinsol *k, int i)
+{
+  return NV_DATA_S(k->x) + i * k->solver->equations.own_unknowns;
+}
+
+dvi_status dvi__kinsol_note(dvi__kinsol *k, int i, const double *next, double whole)
+{
+  const int numbers = k->solver->equations.own_unknowns;
+  const double *restrict point = dvi__kinsol_point(k, i);
+  double *restrict residual = k->known + i * numbers;
+  for (int j = 0; j < numbers; j++) residual[j] = point[j] - next[j];
+  return scale_solution(k, i, whole);
+}
+
+int dvi__kinsol_certify_known(dvi__kinsol *k, int count)
+{
+  const size_t first = (size_t)count * (size_t)k->solver->equations.own_unknowns;
+  memset(k->known + first, 0, ((size_t)k->unknowns - first) * sizeof(double));
+  k->is_known = 1;
+  const int flag = KINSol(k->memory, k->x, KIN_LINESEARCH, k->x_scale, k->x_scale);
+  k->is_known = 0;
+  return flag == KIN_INITIAL_GUESS_OK;
 }
 
 dvi_status dvi__kinsol_solve(dvi__kinsol *k, double size, double *x, dvi__solve_report *report)

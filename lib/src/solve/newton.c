@@ -114,17 +114,35 @@ static int keeps_factor(const dvi__solver *s, const dvi__history *history, const
   return part <= now->unseen;
 }
 
+/* Find whether the rows are at their floor, where corrections settle or do not shrink any more, and
+ * after the first one, which may be the only one. It then leaves as small a part of the residual as
+ * a rounding is of the correction. *evaluated tells whether solver->residual holds the residual at
+ * x instead of the correction. */
+static dvi_status test_rows(dvi__solver *s, const double *x, const dvi__criteria *criteria,
+                            const dvi__history *history, double whole, int settled,
+                            const dvi__solve_report *report, int *evaluated, int *at_floor)
+{
+  const int is_first = history->before == 0,
+            stays = report->correction >= criteria->stagnant * history->before;
+  *at_floor = *evaluated = 0;
+  if (s->magnitude == NULL || !(settled || stays)) return DVI_OK;
+  *evaluated = 1;
+  return dvi__solver_at_floor(
+      s, x, settled,
+      is_first ? criteria->noise * whole / report->correction * report->row : HUGE_VAL, at_floor);
+}
+
 dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__solve_report *report)
 {
   const dvi__criteria criteria = newton_criteria(s);
   dvi__history history = {0};
   outlook now = {.next = HUGE_VAL, .reach = HUGE_VAL};
   double whole, last_relative = HUGE_VAL;
-  int kept = 0, growing = 0, settled = 0, converged = 0;
+  int kept = 0, growing = 0, settled = 0, converged = 0, evaluated = 0, at_floor = 0;
   report->idle = 0;
   for (report->iterations = 1; report->iterations <= MOST_ITERATIONS; report->iterations++) {
     if (!kept) DVI_TRY(dvi__solver_factor(s, x));
-    DVI_TRY(dvi__solver_residual(s, x, s->residual));
+    if (!kept || !evaluated) DVI_TRY(dvi__solver_residual(s, x, s->residual));
     report->row = dvi__largest((size_t)s->equations.unknowns, s->residual);
     const dvi_status solved = dvi__solver_correction(s, s->residual);
     s->unsolved = solved != DVI_OK;
@@ -141,12 +159,12 @@ dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__so
               is_idle = is_small && history.before > 0 &&
                         report->correction >= idle_ratio * history.before;
     converged = has_settled;
-    int at_floor = 0; /* its test overwrites the correction */
     report->idle = is_small ? report->idle + is_idle : 0;
     settled = is_small ? settled + (is_idle && !kept) : 0;
-    if (progress != DVI__CONVERGED &&
-        (settled > 1 || report->correction >= criteria.stagnant * history.before))
-      DVI_TRY(dvi__solver_at_floor(s, x, settled > 1, &at_floor));
+    evaluated = 0;
+    if (progress != DVI__CONVERGED)
+      DVI_TRY(
+          test_rows(s, x, &criteria, &history, whole, settled > 1, report, &evaluated, &at_floor));
     if (at_floor) return DVI_OK;
     if (converged && small_ones_settled(part, &last_relative)) return DVI_OK;
     growing = progress == DVI__STALLED ? growing + 1 : 0;

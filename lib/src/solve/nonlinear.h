@@ -40,6 +40,12 @@ struct dvi__equations {
   const dvi__operator *whole;
   dvi_status (*residual)(void *of, const double *x, double *r);
   dvi_status (*jacobian)(void *of, const double *x, double *values);
+  /* The Jacobian in parts, or NULL. invert evaluates its derivatives at x, and tells whether
+   * correct can replace r by J^{-1} r there, for a determinant with the sign 1. If it cannot, fill
+   * writes the values, which are factored. */
+  dvi_status (*invert)(void *of, const double *x, int *inverted);
+  void (*correct)(void *of, double *r);
+  void (*fill)(void *of, double *values);
   dvi_status (*prepare_chord)(void *of, const double *x); /* NULL if nothing is to be prepared */
   void (*chord)(void *of, double *r);                     /* r <- C^{-1} r */
   /* Set scale [unknowns] > 0 to the size of a row per unit of an unknown. Called after
@@ -63,6 +69,8 @@ struct dvi__equations {
   void (*fixed_point_begin)(void *of, const double *x);
   dvi_status (*fixed_point_iterate)(void *of, double *change, double *largest);
   void (*fixed_point_end)(void *of, double *x);
+  /* that iteration is simplified Newton's method, with the Jacobian of its guess */
+  int fixed_point_frozen;
   /* Those variables, for a test of the solution. Their number, their values after the last
    * iteration, and the residual there, z less what one more iteration makes of it. z is a copy. */
   int own_unknowns;

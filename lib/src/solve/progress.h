@@ -4,32 +4,7 @@
 #define DVI_SOLVE_PROGRESS_H
 #include <stdint.h>
 
-typedef enum dvi__progress { DVI__GO_ON, DVI__CONVERGED, DVI__STALLED } dvi__progress;
-
-/* Criteria of convergence, which depend on how an iteration is expected to go. */
-typedef struct dvi__criteria {
-  /* a correction above this part of the last one, both below the noise, is noise alone */
-  double stagnant;
-  /* corrections below it may be rounding noise, relative to the numbers that are added */
-  double noise;
-  double slowest; /* a correction above this part of the largest expected one ends the iteration */
-  /* the iteration contracts by about one factor, of several modes that may hide each other, rather
-   * than faster and faster */
-  int steady;
-  /* the next correction's own part counts, because the step reads nothing at the point before the
-   * last */
-  int ahead;
-} dvi__criteria;
-
-/* The history of an iteration, 0 before it starts. Below the noise nothing can be measured, and the
- * contraction that was seen above it is taken to go on. */
-typedef struct dvi__history {
-  double last, before; /* corrections before the current one */
-  double ratio;        /* last measured ratio of two corrections */
-  double contraction;  /* factor by which the iteration's own part of a correction shrinks */
-  /* bound on that part; a correction may be small by chance, where complex modes turn */
-  double own;
-} dvi__history;
+#include "num/simd/settling.h"
 
 /* Test one correction and add it to the history. The iteration has converged at the roundoff floor,
  * has stalled above it, or goes on. `unknown` and `size` are the sizes of the unknowns and of the

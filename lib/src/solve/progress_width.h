@@ -27,9 +27,9 @@ INLINE void NAME(update_history)(const NAME(vector) * correction, const NAME(vec
                                  const dvi__criteria *criteria, NAME(history) * t,
                                  NAME(vector) * expected)
 {
-  const NAME(vector)
-      one = (NAME(vector)){0} + 1.0,
-      most = (NAME(vector)){0} + (criteria->slowest < hardly ? criteria->slowest : hardly);
+  const NAME(vector) one = (NAME(vector)){0} + 1.0,
+                     most = (NAME(vector)){0} +
+                            (criteria->slowest < dvi__hardly ? criteria->slowest : dvi__hardly);
   const NAME(mask) first = (NAME(mask))(t->last == 0.0), measured = (NAME(mask))(t->last > *noise),
                    loud = (NAME(mask))(*correction > *noise);
   const NAME(vector) quotient = *correction / t->last;
@@ -64,7 +64,8 @@ INLINE void NAME(test)(const NAME(vector) * correction, const NAME(vector) * unk
   t->last = *correction;
   const NAME(vector) shows = criteria->ahead ? expected * t->own : t->own;
   const NAME(mask)
-      still = quiet & (NAME(mask))(shows <= (criteria->ahead ? unseen : settled) * *unknown);
+      still = quiet &
+              (NAME(mask))(shows <= (criteria->ahead ? dvi__unseen : dvi__settled) * *unknown);
   const NAME(mask) stagnant = second & quiet & ~loud_before & (NAME(mask))(t->contraction == 0.0) &
                               (NAME(mask))(*correction >= criteria->stagnant * last);
   const NAME(mask) slow = loud_before & (NAME(mask))(*correction > criteria->slowest * feared);

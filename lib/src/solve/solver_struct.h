@@ -18,10 +18,14 @@ struct dvi__solver {
   int factored;        /* values are factored */
   int unsolved;        /* the last correction was not found by an iterative solver */
   int in_use;          /* the current iteration uses them */
+  int inverted;        /* the equations have inverted the Jacobian in use */
   dvi__linear *linear; /* NULL if not prepared */
   dvi__kinsol *kinsol; /* NULL if not prepared */
   dvi__kinsol *tester; /* tests the equations' own variables; NULL if not prepared */
+  dvi__kinsol *many;   /* tests many solutions in these at once (certify.h); NULL if not prepared */
   double whole;        /* largest of those after the last iteration */
+  int keeps_point;     /* the tester gets the point before it */
+  int has_point;       /* and has it */
 };
 
 /* Evaluate the residual and count it. */
@@ -35,8 +39,10 @@ dvi_status dvi__solver_correction(dvi__solver *solver, double *r);
 
 /* Find whether every row at x is 0 to a rounding of what is summed in it and of the unknowns, as
  * the Jacobian in use sees them. With `settled` small corrections have not shrunk any more, and
- * rows may be left with their squares. solver->residual holds the last correction, and loses it. */
-dvi_status dvi__solver_at_floor(dvi__solver *solver, const double *x, int settled, int *at_floor);
+ * rows may be left with their squares. Rows above `most` are not there. solver->residual holds the
+ * last correction, and then the residual at x if the sizes of rows are known. */
+dvi_status dvi__solver_at_floor(dvi__solver *solver, const double *x, int settled, double most,
+                                int *at_floor);
 
 /* Give the least part of the largest unknown beside which groups of unknowns are measured. Smaller
  * groups may be noise. */
@@ -56,12 +62,16 @@ dvi_status dvi__newton(dvi__solver *solver, double size, int wary, double *x,
 
 /* KINSOL (kinsol.c). After a positive status of dvi__kinsol_solve there is no solution, and x holds
  * the last point. `own` makes one for the equations' own variables, which does nothing but
- * certify. */
+ * certify. If it is more than 1, that is the number of solutions at once. */
 dvi_status dvi__kinsol_create(dvi__solver *solver, int own, dvi__kinsol **kinsol);
 void dvi__kinsol_destroy(dvi__kinsol **kinsol);
 /* Find whether x is a solution by KINSOL's own test of its residual. */
 dvi_status dvi__kinsol_certify(dvi__kinsol *kinsol, double size, const double *x, int *certified,
                                dvi__solve_report *report);
+/* Certify solutions in own variables by residuals that are known (certify.h). */
+double *dvi__kinsol_point(dvi__kinsol *kinsol, int i);
+dvi_status dvi__kinsol_note(dvi__kinsol *kinsol, int i, const double *next, double whole);
+int dvi__kinsol_certify_known(dvi__kinsol *kinsol, int count);
 dvi_status dvi__kinsol_solve(dvi__kinsol *kinsol, double size, double *x,
                              dvi__solve_report *report);
 

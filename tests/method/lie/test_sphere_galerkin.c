@@ -121,7 +121,8 @@ START_TEST(chains_cost_as_much_as_they_have_links)
 END_TEST
 
 /* Weak springs leave each direction its own block of the Jacobian. One Jacobian serves for many
- * steps, and nothing sparse is analysed but the mass, once, for the first guess. */
+ * steps, and nothing sparse is analysed but the mass, for the velocity and the bend of the first
+ * guess. */
 START_TEST(chains_are_solved_direction_by_direction)
 {
   direction_chain linked;
@@ -134,15 +135,53 @@ START_TEST(chains_are_solved_direction_by_direction)
   dvi_integrator_counters(made, &counters);
   ck_assert_int_eq(counters.simplified, 100);
   ck_assert_int_le(counters.jacobians, 10);
-  ck_assert_int_eq(counters.symbolic, before.symbolic + 1);
-  ck_assert_int_eq(counters.factorizations, before.factorizations + 1);
+  ck_assert_int_eq(counters.symbolic, before.symbolic + 2);
+  ck_assert_int_eq(counters.factorizations, before.factorizations + 2);
   dvi_integrator_destroy(&made);
   destroy_direction_chain(&linked);
 }
 END_TEST
 
+/* The path of a long first step bends away from the straight line by more than a path may from its
+ * guess. The guess bends, too, and nothing is followed from shorter steps. */
+START_TEST(first_steps_are_not_followed)
+{
+  direction_chain linked;
+  dvi_counters counters;
+  make_direction_chain(8, &linked);
+  dvi_integrator *made = create_integrator(linked.system, "sphere-galerkin:degree=4");
+  ck_assert_int_eq(dvi_integrator_start_velocity(made, 0, linked.q, linked.v), DVI_OK);
+  advance(made, 0.2, 1);
+  dvi_integrator_counters(made, &counters);
+  ck_assert_int_eq(counters.followed, 0);
+  dvi_integrator_destroy(&made);
+  destroy_direction_chain(&linked);
+}
+END_TEST
+
+/* The mass couples two directions. Their 32 unknowns are one block, and no sparse Jacobian is
+ * factored. */
+START_TEST(coupled_directions_are_one_block)
+{
+  body model;
+  dvi_counters before, counters;
+  make_body(DIRECTIONS, &model);
+  dvi_integrator *made = body_integrator(&model, "sphere-galerkin:degree=8");
+  advance(made, 0.01, 1);
+  dvi_integrator_counters(made, &before);
+  advance(made, 0.01, 50);
+  dvi_integrator_counters(made, &counters);
+  ck_assert_int_eq(counters.simplified, before.simplified + 50);
+  ck_assert_int_eq(counters.factorizations, before.factorizations);
+  dvi_integrator_destroy(&made);
+  destroy_body(&model);
+}
+END_TEST
+
 SUITE(sphere_galerkin)
 {
+  tcase_add_test(tests, first_steps_are_not_followed);
+  tcase_add_test(tests, coupled_directions_are_one_block);
   tcase_add_test(tests, a_free_direction_keeps_its_momentum);
   tcase_add_loop_test(tests, it_takes_the_steps_of_lie_galerkin, 0, 2);
   tcase_add_test(tests, directions_stay_directions);

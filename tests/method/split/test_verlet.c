@@ -39,6 +39,28 @@ START_TEST(a_step_costs_one_gradient_and_nothing_else)
 }
 END_TEST
 
+/* Newton's method begins with the forces at the end of the last step. Linear friction takes one
+ * correction, whose result is tested with the forces of the kick. Where v is small beside its
+ * roundings, it takes another. */
+START_TEST(a_step_with_linear_friction_evaluates_forces_twice)
+{
+  problem *damped = create_problem("damped-driven", NULL);
+  dvi_integrator *integrator = start_integrator(damped, "verlet");
+  dvi_counters before, after;
+  advance(integrator, 0.1, 1);
+  dvi_integrator_counters(integrator, &before);
+  advance(integrator, 0.1, 200);
+  dvi_integrator_counters(integrator, &after);
+  ck_assert_int_ge(after.gradients - before.gradients, 3 * 200);
+  ck_assert_int_le(after.gradients - before.gradients, 3 * 200 + 10);
+  ck_assert_int_eq(after.jacobians - before.jacobians, 200);
+  /* one coordinate needs no factor */
+  ck_assert_int_eq(after.factorizations, 0);
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&damped);
+}
+END_TEST
+
 START_TEST(a_general_lagrangian_is_refused_by_name)
 {
   problem *pendula = create_problem("double-pendulum", NULL);
@@ -118,6 +140,7 @@ SUITE(verlet)
 {
   tcase_add_test(tests, a_step_is_kick_drift_kick);
   tcase_add_test(tests, a_step_costs_one_gradient_and_nothing_else);
+  tcase_add_test(tests, a_step_with_linear_friction_evaluates_forces_twice);
   tcase_add_test(tests, a_general_lagrangian_is_refused_by_name);
   tcase_add_loop_test(tests, what_it_cannot_do_is_refused_by_name, 0, 9);
   tcase_add_test(tests, no_hessian_is_made_for_it);

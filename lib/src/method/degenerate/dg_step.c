@@ -56,7 +56,8 @@ static dvi_status dg_step_place(dvi__stepper *self, const dvi__state *state, dou
   return dvi__discontinuous_place(one->of, state->t, h, &node);
 }
 
-DVI__STEP_KIND(discontinuous, dg_step_place, dg_step_explain);
+DVI__STEP_PARTS(discontinuous)
+DVI__STEP_KIND(discontinuous, dg_step_place, dg_step_explain, DVI__STEP_PART_MEMBERS);
 
 dvi_status dvi__dg_create(dvi__stepper *self, const dvi__dg_space *space, int alarm,
                           const char *remedy)

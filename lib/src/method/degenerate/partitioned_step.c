@@ -29,7 +29,9 @@ static dvi_status partitioned_step_place(dvi__stepper *self, const dvi__state *s
   return DVI_OK;
 }
 
-DVI__STEP_KIND(partitioned, partitioned_step_place, partitioned_step_explain);
+DVI__STEP_PARTS(partitioned)
+DVI__STEP_KIND(partitioned, partitioned_step_place, partitioned_step_explain,
+               DVI__STEP_PART_MEMBERS);
 
 dvi_status dvi__partitioned_step_create(dvi__stepper *self, dvi__tableau tableau, int stages,
                                         dvi__projection projection)

@@ -6,10 +6,11 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "num/simd/wide.h"
 
 /* Largest block. Inverting and multiplying it takes the cubes and squares of its size, where
  * factors of its sparse pattern may take less. */
-enum { MOST_ROWS = 24 };
+enum { MOST_ROWS = 96 };
 
 struct dvi__blocks {
   int count;
@@ -155,22 +156,26 @@ static int largest_row(int m, const double *column, int from)
   return row;
 }
 
+static inline void subtract_column(int m, double by, const double *restrict column,
+                                   double *restrict other)
+{
+  for (int i = 0; i < m; i++) other[i] -= column[i] * by;
+}
+
 /* Take column k out of all others, and replace it by that of the inverse. */
-static void eliminate(int m, int k, double *A)
+WIDE static void eliminate(int m, int k, double *A)
 {
   double *column = A + (size_t)k * (size_t)m;
-  const double pivot = column[k];
-  column[k] = 1;
-  for (int j = 0; j < m; j++) A[j * m + k] /= pivot;
+  const double inverse = 1 / column[k];
   for (int j = 0; j < m; j++) {
-    const double by = A[j * m + k];
     double *other = A + (size_t)j * (size_t)m;
+    const double by = other[k] / column[k];
     if (j == k) continue;
-    for (int i = 0; i < m; i++)
-      if (i != k) other[i] -= column[i] * by;
+    subtract_column(m, by, column, other);
+    other[k] = by;
   }
-  for (int i = 0; i < m; i++)
-    if (i != k) column[i] *= -A[k * m + k];
+  for (int i = 0; i < m; i++) column[i] *= -inverse;
+  column[k] = inverse;
 }
 
 /* Replace A [m*m] by its inverse. Returns the sign of its determinant, 0 if A is singular. */
@@ -220,17 +225,23 @@ void dvi__blocks_add_moved(const dvi__blocks *blocks, const double *numbers, con
         sum[blocks->unknown[i]] += fabs(*A * x[blocks->unknown[j]]);
 }
 
-void dvi__blocks_solve(const dvi__blocks *blocks, const double *numbers, double *R)
+static inline void add_column(int m, double by, const double *restrict column, double *restrict sum)
 {
-  const double *A = numbers + 1 + blocks->entries;
+  for (int i = 0; i < m; i++) sum[i] += column[i] * by;
+}
+
+WIDE static void solve_blocks(const dvi__blocks *blocks, const double *A, double *R)
+{
   for (int b = 0; b < blocks->count; b++) {
     const int m = blocks->first[b + 1] - blocks->first[b],
               *unknown = blocks->unknown + blocks->first[b];
     double sum[MOST_ROWS] = {0};
-    for (int j = 0; j < m; j++, A += m) {
-      const double by = R[unknown[j]];
-      for (int i = 0; i < m; i++) sum[i] += A[i] * by;
-    }
+    for (int j = 0; j < m; j++, A += m) add_column(m, R[unknown[j]], A, sum);
     for (int i = 0; i < m; i++) R[unknown[i]] = sum[i];
   }
+}
+
+void dvi__blocks_solve(const dvi__blocks *blocks, const double *numbers, double *R)
+{
+  solve_blocks(blocks, numbers + 1 + blocks->entries, R);
 }

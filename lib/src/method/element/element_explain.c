@@ -120,6 +120,9 @@ void dvi__element_explain(const dvi__stepper *self, dvi__text *text)
       : dvi__action_has_preconditioner(own->action)
           ? "constant mass without coupling: fixed point iteration on the positions at the nodes, "
             "in which quadratic potentials with a diagonal Hessian are implicit"
+      : dvi__action_lags(own->action)
+          ? "constant mass without coupling: fixed point iteration on the positions at the nodes, "
+            "in which slow potentials lag behind fast ones"
       : dvi__action_has_fixed_point(own->action)
           ? "constant mass without coupling: fixed point iteration on the positions at the nodes"
           : "constant mass");

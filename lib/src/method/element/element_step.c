@@ -11,6 +11,7 @@
 #include "core/status.h"
 #include "num/compensated.h"
 #include "num/finite.h"
+#include "solve/certify.h"
 
 /* Number of iterations that a kept factor may cost more than a new one, about as much as making
  * one. */
@@ -156,6 +157,7 @@ static dvi_status element_create_solver(dvi__stepper *self, dvi__element *own)
   if (equations.unknowns > self->system->n * equations.group)
     equations.linear = dvi__linear_for_exchanges(equations.unknowns);
   dvi__element_set_newton(&equations);
+  dvi__element_admit_march(self);
   return dvi__solver_create(&equations, self->counters, &own->solver);
 }
 
@@ -453,7 +455,7 @@ static void add_increments(int n, const dvi__element *own, dvi__state *state)
   }
 }
 
-static dvi_status element_advance(dvi__stepper *self, dvi__state *state, double h)
+dvi_status dvi__element_advance(dvi__stepper *self, dvi__state *state, double h)
 {
   const dvi__element *own = self->own;
   element_keep_path(self, state->p);
@@ -547,6 +549,8 @@ dvi_status dvi__element_step(dvi__stepper *self, dvi__state *state, double h)
   dvi__element *own = self->own;
   dvi__solve_report report = {0};
   const dvi__element_place at = element_place(self, state, h);
+  if (own->choice == DVI__SOLVER_CERTIFIED && dvi__element_shows_residuals(own))
+    DVI_TRY(dvi__certify_prepare(own->solver, own->most_together));
   dvi__action_soften(own->action, state->side > 1);
   DVI_TRY(element_find_path(self, &at, &report));
   DVI_TRY(element_ends(own, own->Y));
@@ -554,7 +558,7 @@ dvi_status dvi__element_step(dvi__stepper *self, dvi__state *state, double h)
   dvi__action_forces(own->action, self->memory + dvi__element_forces(self));
   if (own->choice == DVI__SOLVER_CERTIFIED) DVI_TRY(element_certify(self, &at, own->Y, &report));
   DVI_TRY(element_supply(self, state));
-  return element_advance(self, state, h);
+  return dvi__element_advance(self, state, h);
 }
 
 void dvi__element_path(const dvi__stepper *self, const double *q0, double h, double tau, double *q,

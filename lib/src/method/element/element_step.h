@@ -101,6 +101,8 @@ void dvi__explain_linear(dvi__solver *solver, dvi__text *text);
 void dvi__element_destroy(dvi__stepper *self);
 void dvi__element_start(dvi__stepper *self, const double *v);
 dvi_status dvi__element_step(dvi__stepper *self, dvi__state *state, double h);
+int dvi__element_march(dvi__stepper *self, dvi__state *state, dvi__state *last, double h,
+                       int count);
 void dvi__element_path(const dvi__stepper *self, const double *q0, double h, double tau, double *q,
                        double *v);
 void dvi__element_explain(const dvi__stepper *self, dvi__text *text);
@@ -122,7 +124,7 @@ enum {
 
 #define DVI__ELEMENT_OPERATIONS                                                            \
   .destroy = dvi__element_destroy, .start = dvi__element_start, .step = dvi__element_step, \
-  .path = dvi__element_path, .explain = dvi__element_explain,                              \
+  .march = dvi__element_march, .path = dvi__element_path, .explain = dvi__element_explain, \
   .prepare_lanes = dvi__element_prepare_lanes, .clear_lanes = dvi__element_clear_lanes,    \
   .step_lanes = dvi__element_step_lanes
 

@@ -70,6 +70,9 @@ typedef struct dvi__element {
   /* the time that passes in the step */
   double duration;
   double *supply; /* [1 + symmetries] what forces supply in the step */
+  /* the most steps of a march, because of what certifies them; marches to be left out after one
+   * that was not certified, and their number the last time */
+  int most_together, uncertified, wait;
   double work;    /* what forces and time supply to the energy */
   double *guess;  /* [unknowns] guess of the iteration, in charts, or the last step's unknowns */
   double *branch; /* [DVI__BRANCH_ROOM * unknowns] work to follow a branch, NULL until needed */
@@ -77,6 +80,15 @@ typedef struct dvi__element {
 
 /* Put the equations at a step of length h from there. */
 void dvi__element_put(dvi__element *own, const dvi__element_place *at, double h);
+
+/* Tell whether the last iteration shows a residual. It does not where forces lag. */
+int dvi__element_shows_residuals(const dvi__element *own);
+
+/* Tell the driver whether the element marches. */
+void dvi__element_admit_march(dvi__stepper *self);
+
+/* Advance the state by the increments of a solved step, and keep its path. */
+dvi_status dvi__element_advance(dvi__stepper *self, dvi__state *state, double h);
 
 /* Tell whether the rungs follow one after the other. */
 int dvi__element_is_ladder(const dvi__element *own);

@@ -91,7 +91,9 @@ static dvi_status hamiltonian_place(dvi__stepper *self, const dvi__state *state,
   return DVI_OK;
 }
 
-DVI__STEP_KIND(canonical, hamiltonian_place, hamiltonian_explain);
+DVI__STEP_ITERATION(canonical)
+
+DVI__STEP_KIND(canonical, hamiltonian_place, hamiltonian_explain, DVI__STEP_ITERATES);
 
 static dvi_status hamiltonian_refuse(const dvi__stepper *self, dvi_status status)
 {
@@ -160,7 +162,8 @@ static dvi_status hamiltonian_step(dvi__stepper *self, dvi__state *state, double
   DVI_TRY(hamiltonian_check_regular(self, state));
   DVI_TRY(hamiltonian_choose_units(self, state, h));
   DVI_TRY(dvi__one_step_solve(self, state, h));
-  DVI_TRY(dvi__canonical_residual(one->of, one->x, one->work));
+  if (!dvi__one_step_is_iterated(self))
+    DVI_TRY(dvi__canonical_residual(one->of, one->x, one->work));
   dvi__canonical_ends(one->of, one->x, one->dq, one->dp);
   dvi__canonical_keep(one->of, one->x, one->work);
   DVI_TRY(dvi__one_step_move(self, state, h, one->work));

@@ -39,7 +39,10 @@ static dvi_status phase_step_place(dvi__stepper *self, const dvi__state *state, 
                                   phase_step_multiplier(self));
 }
 
-DVI__STEP_KIND(phase_element, phase_step_place, phase_step_explain);
+DVI__STEP_ITERATION(phase_element)
+
+DVI__STEP_KIND(phase_element, phase_step_place, phase_step_explain, DVI__STEP_ITERATES,
+               .fixed_point_frozen = 1);
 
 dvi_status dvi__phase_step_create(dvi__stepper *self, int degree, int moments, int alarm)
 {

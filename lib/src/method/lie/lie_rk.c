@@ -206,8 +206,11 @@ static dvi_status crouch_grossman(dvi__stepper *self, dvi__state *state, double 
     DVI_TRY(dvi__flow_rates(own->flow, state->t + 0.5 * h * stage, state->q, state->p, own->omega,
                             own->m_rate));
     for (int i = 0; i < self->system->nv; i++) own->theta[i] = part[stage] * own->omega[i];
-    move_state(self, state, own->theta, part[stage], own->m_rate);
+    if (stage == 0)
+      dvi__flow_place(own->flow, own->theta, part[stage], own->m_rate, &own->start, state->q,
+                      state->p);
   }
+  move_state(self, state, own->theta, h, own->m_rate);
   return DVI_OK;
 }
 
@@ -230,7 +233,8 @@ static dvi_status munthe_kaas(dvi__stepper *self, dvi__state *state, double h)
       own->m_sum[i] += b[stage] * own->m_rate[i];
       own->theta[i] = next * own->omega[i];
     }
-    if (stage < 3) move_state(self, state, own->theta, next, own->m_rate);
+    if (stage < 3)
+      dvi__flow_place(own->flow, own->theta, next, own->m_rate, &own->start, state->q, state->p);
   }
   move_state(self, state, own->sum, h, own->m_sum);
   return DVI_OK;

@@ -18,7 +18,7 @@
  * Vilmart 2006). Source: Moser and Veselov 1991; Leok and Shingel 2012, sec. 2.3. */
 #include <string.h>
 
-#include "step/lie/lie_drift.h"
+#include "step/lie/lie_drift_members.h"
 #include "core/memory.h"
 #include "core/status.h"
 #include "method/lie/lie_rattle.h"
@@ -56,14 +56,25 @@ static double *lie_verlet_gradient_known(const dvi__stepper *self)
   return self->memory + self->system->n;
 }
 
+/* Where the displacement and the forces begin in the memory. */
+static size_t displacement_at(const dvi__stepper *self)
+{
+  return (size_t)self->system->n + 1;
+}
+
+static size_t forces_at(const dvi__stepper *self)
+{
+  return displacement_at(self) + (size_t)self->system->nv;
+}
+
 static double *displacement_of(const dvi__stepper *self)
 {
-  return self->memory + self->system->n + 1;
+  return self->memory + displacement_at(self);
 }
 
 static double *lie_verlet_forces(const dvi__stepper *self)
 {
-  return displacement_of(self) + self->system->nv;
+  return self->memory + forces_at(self);
 }
 
 static double *lie_verlet_multipliers(const dvi__stepper *self)
@@ -178,6 +189,102 @@ static dvi_status lie_verlet_step(dvi__stepper *self, dvi__state *state, double 
   return own->rattle != NULL ? dvi__lie_rattle_end(own->rattle, state->t, &phase) : DVI_OK;
 }
 
+/* ---- members of an ensemble side by side ---- */
+
+/* The evaluator has counters of its own. dvi__members counts the evaluations of each member. */
+typedef struct lie_verlet_lanes {
+  dvi__evaluator *evaluator;
+  double *work; /* [DVI__LIE_DRIFT_WORK*capacity] */
+} lie_verlet_lanes;
+
+static dvi_status lie_verlet_prepare_lanes(dvi__stepper *self, int capacity)
+{
+  const lie_verlet *own = self->own;
+  const dvi_system *s = self->system;
+  if (own->rattle != NULL || !dvi__lie_drift_has_members(own->drift) ||
+      !dvi__system_has_gradients(s))
+    return DVI_OK;
+  lie_verlet_lanes *lanes = self->lanes = DVI_NEW(lie_verlet_lanes, 1);
+  if (lanes == NULL) return dvi__fail(DVI_NO_MEMORY, "lie-verlet: no memory");
+  lanes->work = DVI_NEW(double, DVI__LIE_DRIFT_WORK *(size_t)capacity);
+  if (lanes->work == NULL) return dvi__fail(DVI_NO_MEMORY, "lie-verlet: no memory");
+  return dvi__evaluator_create(s, capacity, DVI__GRADIENTS, NULL, &lanes->evaluator);
+}
+
+static void lie_verlet_clear_lanes(dvi__stepper *self)
+{
+  lie_verlet_lanes *lanes = self->lanes;
+  dvi__evaluator_destroy(&lanes->evaluator);
+  dvi__release(lanes->work);
+  dvi__release(lanes);
+}
+
+static double *members_forces(const dvi__stepper *self, const dvi__members *m)
+{
+  return m->memory + forces_at(self) * (size_t)m->count;
+}
+
+static dvi_status lie_verlet_gradients(const dvi__stepper *self, const dvi__members *m)
+{
+  dvi__evaluator *evaluator = ((const lie_verlet_lanes *)self->lanes)->evaluator;
+  if (self->system->force_count > 0)
+    DVI_TRY(
+        dvi__forces(evaluator, DVI__FORCE, m->count, m->t, m->q, NULL, members_forces(self, m)));
+  return self->system->potential_count > 0
+             ? dvi__potentials_gradient(evaluator, m->count, m->t, m->q, m->memory)
+             : DVI_OK;
+}
+
+/* Evaluate the gradients at the start of a step if a member's is not known. Those that are known
+ * stay as they are. */
+static dvi_status lie_verlet_first_gradients(const dvi__stepper *self, dvi__members *m)
+{
+  const int gradients = (self->system->potential_count > 0) + (self->system->force_count > 0);
+  double *known = m->memory + (size_t)self->system->n * (size_t)m->count;
+  int wanted = 0;
+  for (int k = 0; k < m->count && gradients > 0; k++) {
+    wanted |= known[k] == 0;
+    m->gradients[k] += known[k] == 0 ? 2 * gradients : gradients;
+    known[k] = 1;
+  }
+  return wanted ? lie_verlet_gradients(self, m) : DVI_OK;
+}
+
+static void lie_verlet_kick_members(const dvi__stepper *self, const dvi__members *m,
+                                    const dvi__phase *phase, double h)
+{
+  const lie_verlet *own = self->own;
+  if (self->system->potential_count > 0)
+    dvi__lie_drift_kick_members(own->drift, m->count, h, m->memory, phase);
+  if (self->system->force_count > 0)
+    dvi__lie_drift_push_members(own->drift, m->count, h, members_forces(self, m), phase);
+}
+
+/* Take the step of all members, or leave them all. When each steps alone, the member for which a
+ * callback failed shows. */
+static void lie_verlet_step_lanes(dvi__stepper *self, dvi__members *m, double h)
+{
+  const lie_verlet *own = self->own;
+  const lie_verlet_lanes *lanes = self->lanes;
+  const size_t count = (size_t)m->count;
+  const dvi__phase phase = {.q = m->q,
+                            .p = m->p,
+                            .q_compensation = m->q_compensation,
+                            .p_compensation = m->p_compensation};
+  if (lie_verlet_first_gradients(self, m) != DVI_OK) {
+    memset(m->left, 1, count);
+    return;
+  }
+  lie_verlet_kick_members(self, m, &phase, 0.5 * h);
+  dvi__lie_drift_drift_members(own->drift, m->count, h, &phase,
+                               m->memory + displacement_at(self) * count, lanes->work, m->left);
+  for (size_t k = 0; k < count; k++) dvi__add_compensated(m->t + k, m->t_compensation + k, h);
+  if (lie_verlet_gradients(self, m) != DVI_OK)
+    memset(m->left, 1, count);
+  else
+    lie_verlet_kick_members(self, m, &phase, 0.5 * h);
+}
+
 static void lie_verlet_path(const dvi__stepper *self, const double *q0, double h, double tau,
                             double *q, double *v)
 {
@@ -218,4 +325,7 @@ const dvi__method dvi__lie_verlet = {
     .step = lie_verlet_step,
     .path = lie_verlet_path,
     .explain = lie_verlet_explain,
+    .prepare_lanes = lie_verlet_prepare_lanes,
+    .clear_lanes = lie_verlet_clear_lanes,
+    .step_lanes = lie_verlet_step_lanes,
 };

@@ -3,12 +3,11 @@
  *     Psi_h = Phi_{g_m h} o ... o Phi_{g_2 h} o Phi_{g_1 h},    g_i = g_{m+1-i},   sum g_i = 1
  * The discrete Lagrangian is the sum of those of the substeps, stationary in the points between
  * them (Marsden and West 2001, sec. 2.5.1). The g_i are those of method/scheme.h. */
-#include <math.h>
 #include <string.h>
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "method/method.h"
+#include "method/damping.h"
 #include "method/scheme.h"
 #include "num/compensated.h"
 #include "system/rescale/transformed.h"
@@ -52,33 +51,6 @@ static const dvi__scheme *scheme_of(const dvi__stepper *self)
   return dvi__scheme_at(self->settings.value[ORDER]);
 }
 
-/* Give the trace of the step of Verlet's method for q'' = -q, as the base, of length z. */
-static double trace_at(const dvi__scheme *s, double z)
-{
-  double a = 1, b = 0, c = 0, d = 1; /* the columns (q, p) of two motions */
-  for (int i = 0; i < s->substeps; i++) {
-    const double g = z * dvi__scheme_part(s, i);
-    c -= 0.5 * g * a;
-    d -= 0.5 * g * b;
-    a += g * c;
-    b += g * d;
-    c -= 0.5 * g * a;
-    d -= 0.5 * g * b;
-  }
-  return a + d;
-}
-
-/* Give the largest z, to a thousandth, up to which all steps are stable: the trace of a matrix with
- * determinant 1 is that of a rotation (Hairer, Lubich and Wanner 2006, sec. I.5.2). Where the trace
- * touches 2, it counts as one. */
-static double scheme_stability(const dvi__scheme *s)
-{
-  const double mesh = 1e-3, touch = 1e-9;
-  int i = 1;
-  while (fabs(trace_at(s, i * mesh)) <= 2 + touch) i++;
-  return (i - 1) * mesh;
-}
-
 static dvi_status composition_create(dvi__stepper *self)
 {
   int *chosen = &self->settings.value[BASE];
@@ -104,7 +76,7 @@ static dvi_status composition_create(dvi__stepper *self)
   self->order = scheme_of(self)->order;
   self->order = base->order > self->order ? base->order : self->order;
   self->symmetric = 1;
-  self->stable = 0.5 * base->stable * scheme_stability(scheme_of(self));
+  self->stable = 0.5 * base->stable * scheme_of(self)->stable;
   self->bound = base->bound;
   self->follows = base->follows;
   self->fingerprint = base->fingerprint;
@@ -162,7 +134,7 @@ static int composition_pass(dvi__stepper *self, const dvi__state *now, const dou
   const dvi__scheme *s = scheme_of(self);
   double substeps[DVI__SUBSTEPS_MOST];
   if (base->method->pass == NULL || count != 1) return 0;
-  for (int i = 0; i < s->substeps; i++) substeps[i] = h[0] * dvi__scheme_part(s, i);
+  dvi__scheme_lengths(s, h[0], substeps);
   if (!base->method->pass(base, now, before, next, substeps, s->substeps)) return 0;
   move_clock(now->t, now->t_compensation, h[0], &next->t, &next->t_compensation);
   return 1;
@@ -201,8 +173,7 @@ static void composition_step_lanes(dvi__stepper *self, dvi__members *m, double h
   double *t = self->lanes, *t_compensation = t + m->count;
   memcpy(t, m->t, bytes);
   memcpy(t_compensation, m->t_compensation, bytes);
-  for (int i = 0; i < s->substeps; i++)
-    base->method->step_lanes(base, m, h * dvi__scheme_part(s, i));
+  for (int i = 0; i < s->substeps; i++) dvi__take_step_lanes(base, m, h * dvi__scheme_part(s, i));
   for (int k = 0; k < m->count; k++)
     move_clock(t[k], t_compensation[k], h, m->t + k, m->t_compensation + k);
 }

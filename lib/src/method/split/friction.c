@@ -21,9 +21,9 @@ struct dvi__friction {
   dvi_counters *counters;
   dvi__pattern pattern;         /* of M - h/2 F_v */
   int *mass_place, *by_v_place; /* places of the entries of both */
-  dvi__linear *matrix;
-  double *values, *F_q, *F_v;                     /* [entries] */
-  double *numbers, *v, *force, *residual, *given; /* [n] each, all numbers, p0 - h/2 dV */
+  dvi__linear *matrix;          /* NULL if the pattern has the diagonal alone */
+  double *values, *F_q, *F_v;   /* [entries] */
+  double *residual, *given;     /* [n], residual or correction, and p0 - h/2 dV */
 };
 
 /* ---- create ---- */
@@ -37,12 +37,9 @@ static dvi_status friction_allocate(dvi__friction *f)
   f->values = DVI_NEW(double, dvi__pattern_entries(&f->pattern));
   f->F_q = DVI_NEW(double, dvi__pattern_entries(&s->by_q));
   f->F_v = DVI_NEW(double, dvi__pattern_entries(&s->by_v));
-  f->numbers = DVI_NEW(double, 4 * n);
-  if (!f->mass_place || !f->by_v_place || !f->values || !f->F_q || !f->F_v || !f->numbers)
+  f->residual = DVI_NEW(double, 2 * n);
+  if (!f->mass_place || !f->by_v_place || !f->values || !f->F_q || !f->F_v || !f->residual)
     return dvi__fail(DVI_NO_MEMORY, "verlet: no memory for forces of %zu coordinates", n);
-  f->v = f->numbers;
-  f->force = f->v + n;
-  f->residual = f->force + n;
   f->given = f->residual + n;
   dvi__pattern_embed(&s->vv, &f->pattern, f->mass_place);
   dvi__pattern_embed(&s->by_v, &f->pattern, f->by_v_place);
@@ -54,6 +51,8 @@ static dvi_status friction_prepare(dvi__friction *f)
   DVI_TRY(dvi__evaluator_create(f->system, 1, DVI__HESSIANS, f->counters, &f->evaluator));
   DVI_TRY(dvi__pattern_union(&f->system->vv, &f->system->by_v, &f->pattern));
   DVI_TRY(friction_allocate(f));
+  /* the mass fills the diagonal */
+  if (dvi__pattern_entries(&f->pattern) == f->pattern.columns) return DVI_OK;
   return dvi__linear_create(&f->pattern, DVI__LINEAR_AUTO, f->counters, &f->matrix);
 }
 
@@ -81,48 +80,95 @@ void dvi__friction_destroy(dvi__friction **friction)
   dvi__release(f->values);
   dvi__release(f->F_q);
   dvi__release(f->F_v);
-  dvi__release(f->numbers);
+  dvi__release(f->residual);
   dvi__release(f);
   *friction = NULL;
 }
 
 /* ---- solve ---- */
 
-static dvi_status factor_matrix(dvi__friction *f, const dvi__state *state, double h)
+/* Forces of friction [n] at a velocity [n]. */
+typedef struct pushed {
+  double *F, *v;
+} pushed;
+
+static pushed pushed_in(const dvi__friction *f, double *memory)
+{
+  return (pushed){memory, memory + f->system->n};
+}
+
+static dvi_status evaluate_force(dvi__friction *f, const dvi__state *state, const pushed *at)
+{
+  return dvi__forces(f->evaluator, DVI__FRICTION, 1, &state->t, state->q, at->v, at->F);
+}
+
+static dvi_status factor_diagonal(const dvi__friction *f)
+{
+  const int n = f->pattern.columns;
+  for (int i = 0; i < n; i++)
+    if (f->values[i] == 0)
+      return dvi__fail(DVI_SINGULAR, "the %d x %d matrix is singular to working precision", n, n);
+  return DVI_OK;
+}
+
+static dvi_status factor_matrix(dvi__friction *f, const dvi__state *state, double h,
+                                const pushed *at)
 {
   const dvi_system *s = f->system;
   const double *mass = s->mass_diagonal != NULL ? s->mass_diagonal : s->mass_values;
+  const int in_mass = dvi__pattern_entries(&s->vv), in_by_v = dvi__pattern_entries(&s->by_v);
   f->counters->jacobians++;
-  DVI_TRY(dvi__forces_jacobian(f->evaluator, 1, &state->t, state->q, f->v, f->F_q, f->F_v));
+  DVI_TRY(dvi__forces_jacobian(f->evaluator, 1, &state->t, state->q, at->v, f->F_q, f->F_v));
   memset(f->values, 0, (size_t)dvi__pattern_entries(&f->pattern) * sizeof(double));
-  for (int e = 0; e < dvi__pattern_entries(&s->vv); e++) f->values[f->mass_place[e]] = mass[e];
-  for (int e = 0; e < dvi__pattern_entries(&s->by_v); e++)
-    f->values[f->by_v_place[e]] -= 0.5 * h * f->F_v[e];
-  return dvi__linear_factor(f->matrix, f->values);
+  for (int e = 0; e < in_mass; e++) f->values[f->mass_place[e]] = mass[e];
+  for (int e = 0; e < in_by_v; e++) f->values[f->by_v_place[e]] -= 0.5 * h * f->F_v[e];
+  return f->matrix != NULL ? dvi__linear_factor(f->matrix, f->values) : factor_diagonal(f);
+}
+
+static dvi_status solve_matrix(dvi__friction *f, double *x)
+{
+  if (f->matrix != NULL) return dvi__linear_solve(f->matrix, x);
+  for (int i = 0; i < f->pattern.columns; i++) x[i] /= f->values[i];
+  return DVI_OK;
 }
 
 /* Correct v by one iteration, with a new matrix or the last one. *change becomes the largest
- * change. */
+ * change. F stays as it is. */
 static dvi_status correct_velocity(dvi__friction *f, const dvi__state *state, double h, int renew,
-                                   double *change)
+                                   const pushed *at, double *change)
 {
   const int n = f->system->n;
+  const double *mass = f->system->mass_diagonal, half = 0.5 * h;
   f->counters->residuals++;
-  DVI_TRY(dvi__lagrangian_gradient(f->evaluator, 1, &state->t, state->q, f->v, NULL, f->residual));
-  DVI_TRY(dvi__forces(f->evaluator, DVI__FRICTION, 1, &state->t, state->q, f->v, f->force));
-  for (int i = 0; i < n; i++) f->residual[i] = f->given[i] + 0.5 * h * f->force[i] - f->residual[i];
-  if (renew) DVI_TRY(factor_matrix(f, state, h));
-  DVI_TRY(dvi__linear_solve(f->matrix, f->residual));
-  if (dvi__first_not_finite((size_t)n, f->residual) >= 0)
-    return dvi__fail(DVI_NOT_FINITE, "the velocity of the step is not finite");
-  for (int i = 0; i < n; i++) f->v[i] += f->residual[i];
+  if (mass == NULL)
+    DVI_TRY(
+        dvi__lagrangian_gradient(f->evaluator, 1, &state->t, state->q, at->v, NULL, f->residual));
+  for (int i = 0; i < n; i++) {
+    const double p = mass != NULL ? mass[i] * at->v[i] : f->residual[i];
+    f->residual[i] = f->given[i] + half * at->F[i] - p;
+  }
+  if (renew) DVI_TRY(factor_matrix(f, state, h, at));
+  DVI_TRY(solve_matrix(f, f->residual));
   *change = dvi__largest((size_t)n, f->residual);
+  if (!isfinite(*change))
+    return dvi__fail(DVI_NOT_FINITE, "the velocity of the step is not finite");
+  for (int i = 0; i < n; i++) at->v[i] += f->residual[i];
   return DVI_OK;
+}
+
+/* Let F follow the last correction of v, which is as small as roundings, by its derivative. */
+static void follow_correction(const dvi__friction *f, const pushed *at)
+{
+  const dvi__pattern *by_v = &f->system->by_v;
+  for (int j = 0; j < by_v->columns; j++)
+    for (int e = by_v->start[j]; e < by_v->start[j + 1]; e++)
+      at->F[by_v->row[e]] += f->F_v[e] * f->residual[j];
 }
 
 /* Newton's method goes on until its corrections are roundings, or as small as roundings and no
  * longer smaller than the last. The matrix is kept while they shrink fast. */
-static dvi_status find_velocity(dvi__friction *f, const dvi__state *state, double h)
+static dvi_status find_velocity(dvi__friction *f, const dvi__state *state, double h,
+                                const pushed *at)
 {
   const size_t n = (size_t)f->system->n;
   double change = HUGE_VAL, before = HUGE_VAL;
@@ -130,34 +176,47 @@ static dvi_status find_velocity(dvi__friction *f, const dvi__state *state, doubl
   for (int iteration = 0; iteration < MOST_ITERATIONS; iteration++) {
     const double last = change;
     const int renew = iteration == 0 || !(last <= fast_change * before);
-    DVI_TRY(correct_velocity(f, state, h, renew, &change));
+    DVI_TRY(correct_velocity(f, state, h, renew, at, &change));
     before = last;
-    const double size = dvi__largest(n, f->v);
-    if (change <= 4 * DBL_EPSILON * size || (change <= 1e-10 * size && change >= 0.5 * last))
+    const double size = dvi__largest(n, at->v);
+    if (change <= 4 * DBL_EPSILON * size || (change <= 1e-10 * size && change >= 0.5 * last)) {
+      follow_correction(f, at);
       return DVI_OK;
+    }
+    DVI_TRY(evaluate_force(f, state, at));
   }
   return dvi__fail(DVI_NOT_CONVERGED,
                    "the velocity of the step does not settle in %d iterations (change %.1e)",
                    (int)MOST_ITERATIONS, change);
 }
 
+size_t dvi__friction_memory(const dvi_system *system)
+{
+  return 2 * (size_t)system->n;
+}
+
+dvi_status dvi__friction_start(dvi__friction *f, const dvi__state *state, double *memory)
+{
+  const pushed at = pushed_in(f, memory);
+  dvi__mass_solve(f->evaluator, 1, state->p, at.v);
+  return evaluate_force(f, state, &at);
+}
+
 dvi_status dvi__friction_solve(dvi__friction *f, const dvi__state *state, double h,
-                               const double *V_q, const double **F)
+                               const double *V_q, double *memory)
 {
+  const pushed at = pushed_in(f, memory);
   for (int i = 0; i < f->system->n; i++) f->given[i] = state->p[i] - 0.5 * h * V_q[i];
-  dvi__mass_solve(f->evaluator, 1, f->given, f->v);
-  DVI_TRY(find_velocity(f, state, h));
-  *F = f->force;
-  return dvi__forces(f->evaluator, DVI__FRICTION, 1, &state->t, state->q, f->v, f->force);
+  return find_velocity(f, state, h, &at);
 }
 
-dvi_status dvi__friction_end(dvi__friction *f, const dvi__state *state, const double **F)
+dvi_status dvi__friction_end(dvi__friction *f, const dvi__state *state, double *memory)
 {
-  *F = f->force;
-  return dvi__forces(f->evaluator, DVI__FRICTION, 1, &state->t, state->q, f->v, f->force);
+  const pushed at = pushed_in(f, memory);
+  return evaluate_force(f, state, &at);
 }
 
-const double *dvi__friction_velocity(const dvi__friction *f)
+const double *dvi__friction_velocity(const dvi__friction *f, const double *memory)
 {
-  return f->v;
+  return memory + f->system->n;
 }

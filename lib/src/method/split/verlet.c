@@ -15,7 +15,9 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "method/split/friction.h"
+#include "method/split/impulse.h"
 #include "method/split/rattle.h"
+#include "method/split/verlet_alone.h"
 #include "method/split/verlet_lanes.h"
 #include "num/compensated.h"
 
@@ -40,8 +42,8 @@ static const dvi__key keys[] = {
 };
 
 /* The memory holds the gradient at the end of the last step, which is that at the start of the
- * next, and then a flag, and then the multipliers of holonomic constraints, from which those of the
- * next step are sought. */
+ * next, and then a flag, and then the multipliers of holonomic constraints, or the friction, from
+ * which those of the next step are sought. */
 typedef struct verlet {
   dvi__evaluator *evaluator;
   /* [2 n] a change, and forces; NULL if each coordinate moves alone, by its momentum divided by its
@@ -58,6 +60,11 @@ typedef struct verlet {
 static double *verlet_gradient_known(const dvi__stepper *self, double *memory)
 {
   return memory + self->system->n;
+}
+
+static double *verlet_friction(const dvi__stepper *self)
+{
+  return self->memory + self->system->n + 1;
 }
 
 static double *verlet_multipliers(const dvi__stepper *self)
@@ -125,6 +132,7 @@ static dvi_status verlet_create(dvi__stepper *self)
   self->stable = 2; /* a motion turns by theta in a step, cos(theta) = 1 - (h omega)^2/2 */
   self->memory_count = (size_t)self->system->n + 1 +
                        (1 + DVI__RATTLE_TREND) * (size_t)self->system->row_count;
+  if (self->system->terms & DVI__FRICTION) self->memory_count += dvi__friction_memory(self->system);
   if (own == NULL) return dvi__fail(DVI_NO_MEMORY, "verlet: no memory");
   DVI_TRY(allocate_numbers(self->system, own));
   DVI_TRY(create_blocking(self, own));
@@ -167,14 +175,6 @@ static void verlet_drift(const dvi__stepper *self, dvi__state *state, double h)
   dvi__add_compensated(&state->t, &state->t_compensation, h);
 }
 
-static dvi__phase verlet_phase_of(const dvi__state *state)
-{
-  return (dvi__phase){.q = state->q,
-                      .p = state->p,
-                      .q_compensation = state->q_compensation,
-                      .p_compensation = state->p_compensation};
-}
-
 /* Kick and drift each coordinate alone. */
 static void verlet_kick_drift(const dvi__stepper *self, dvi__state *state, double h)
 {
@@ -187,8 +187,8 @@ static void verlet_kick_drift(const dvi__stepper *self, dvi__state *state, doubl
                                                  .scalar = own->scalar,
                                                  .mass = self->system->mass_diagonal,
                                                  .force = self->memory,
-                                                 .from = verlet_phase_of(state),
-                                                 .to = verlet_phase_of(state)});
+                                                 .from = dvi__impulse_phase(state),
+                                                 .to = dvi__impulse_phase(state)});
   dvi__add_compensated(&state->t, &state->t_compensation, h);
 }
 
@@ -200,7 +200,7 @@ static dvi_status verlet_supply(const dvi__stepper *self, dvi__state *state, dou
   double *F = own->change + self->system->n;
   if (state->supplied == NULL) return DVI_OK;
   if (own->friction != NULL)
-    v = dvi__friction_velocity(own->friction);
+    v = dvi__friction_velocity(own->friction, verlet_friction(self));
   else
     dvi__mass_solve(own->evaluator, 1, state->p, own->change);
   DVI_TRY(dvi__forces(own->evaluator, DVI__FORCES, 1, &state->t, state->q, v, F));
@@ -210,19 +210,19 @@ static dvi_status verlet_supply(const dvi__stepper *self, dvi__state *state, dou
   return DVI_OK;
 }
 
-static void add_friction(const dvi__stepper *self, dvi__state *state, double h, const double *F)
+static void add_friction(const dvi__stepper *self, dvi__state *state, double h)
 {
-  dvi__lanes_add_scaled((size_t)self->system->n, h, F, state->p, state->p_compensation);
+  dvi__lanes_add_scaled((size_t)self->system->n, h, verlet_friction(self), state->p,
+                        state->p_compensation);
 }
 
 static dvi_status verlet_begin(dvi__stepper *self, dvi__state *state, double h)
 {
   const verlet *own = self->own;
-  const double *F;
   if (own->friction != NULL)
-    DVI_TRY(dvi__friction_solve(own->friction, state, h, self->memory, &F));
+    DVI_TRY(dvi__friction_solve(own->friction, state, h, self->memory, verlet_friction(self)));
   verlet_kick(self, state, 0.5 * h);
-  if (own->friction != NULL) add_friction(self, state, 0.5 * h, F);
+  if (own->friction != NULL) add_friction(self, state, 0.5 * h);
   if (own->rattle == NULL) return DVI_OK;
   return dvi__rattle_begin(own->rattle, state, h, verlet_multipliers(self), verlet_trend(self));
 }
@@ -230,14 +230,13 @@ static dvi_status verlet_begin(dvi__stepper *self, dvi__state *state, double h)
 static dvi_status verlet_end(dvi__stepper *self, dvi__state *state, double h)
 {
   const verlet *own = self->own;
-  const double *F;
   DVI_TRY(verlet_gradient(self, state));
   verlet_kick(self, state, 0.5 * h);
   if (own->rattle != NULL)
     return dvi__rattle_end(own->rattle, state, h, verlet_multipliers(self), verlet_trend(self));
   if (own->friction == NULL) return DVI_OK;
-  DVI_TRY(dvi__friction_end(own->friction, state, &F));
-  add_friction(self, state, 0.5 * h, F);
+  DVI_TRY(dvi__friction_end(own->friction, state, verlet_friction(self)));
+  add_friction(self, state, 0.5 * h);
   return DVI_OK;
 }
 
@@ -251,9 +250,17 @@ static dvi_status verlet_forced_step(dvi__stepper *self, dvi__state *state, doub
   return verlet_end(self, state, h);
 }
 
+static dvi_status verlet_first(dvi__stepper *self, const dvi__state *state)
+{
+  const verlet *own = self->own;
+  DVI_TRY(verlet_gradient(self, state));
+  return own->friction != NULL ? dvi__friction_start(own->friction, state, verlet_friction(self))
+                               : DVI_OK;
+}
+
 static dvi_status verlet_step(dvi__stepper *self, dvi__state *state, double h)
 {
-  if (*verlet_gradient_known(self, self->memory) == 0) DVI_TRY(verlet_gradient(self, state));
+  if (*verlet_gradient_known(self, self->memory) == 0) DVI_TRY(verlet_first(self, state));
   if (self->system->force_count > 0 || self->system->row_count > 0)
     return verlet_forced_step(self, state, h);
   if (((const verlet *)self->own)->change == NULL) {
@@ -267,14 +274,28 @@ static dvi_status verlet_step(dvi__stepper *self, dvi__state *state, double h)
   return DVI_OK;
 }
 
-/* ---- temporal blocking ---- */
+/* ---- several steps at once ---- */
 
-static int verlet_pass(dvi__stepper *self, const dvi__state *now, const double *before,
-                       dvi__state *next, const double *h, int count)
+/* Take steps of few coordinates, or of those that temporal blocking does not take. */
+static int verlet_pass_alone(dvi__stepper *self, const dvi__state *now, const double *before,
+                             dvi__state *next, const double *h, int count)
+{
+  const verlet *own = self->own;
+  const dvi__verlet_alone alone = {self->system, own->evaluator, own->by, own->scalar};
+  const double *gradient = before;
+  if (before[self->system->n] == 0) {
+    if (verlet_gradient(self, now) != DVI_OK) return 0;
+    gradient = self->memory;
+  }
+  *verlet_gradient_known(self, self->memory) = 1;
+  return dvi__verlet_alone_steps(&alone, now, gradient, next, self->memory, h, count);
+}
+
+static int verlet_pass_blocked(dvi__stepper *self, const dvi__state *now, const double *before,
+                               dvi__state *next, const double *h, int count)
 {
   const verlet *own = self->own;
   double t[DVI__BLOCKING_SUBSTEPS];
-  if (own->blocking == NULL || count > DVI__BLOCKING_SUBSTEPS) return 0;
   const int known = before[self->system->n] != 0;
   next->t = now->t;
   next->t_compensation = now->t_compensation;
@@ -288,10 +309,25 @@ static int verlet_pass(dvi__stepper *self, const dvi__state *now, const double *
                                                                 .h = h,
                                                                 .t0 = now->t,
                                                                 .t = t,
-                                                                .from = verlet_phase_of(now),
-                                                                .to = verlet_phase_of(next),
+                                                                .from = dvi__impulse_phase(now),
+                                                                .to = dvi__impulse_phase(next),
                                                                 .gradient = known ? before : NULL,
                                                                 .gradient_to = self->memory});
+}
+
+/* The step names a failure, and has its evaluations counted. */
+static int verlet_pass(dvi__stepper *self, const dvi__state *now, const double *before,
+                       dvi__state *next, const double *h, int count)
+{
+  const verlet *own = self->own;
+  const long gradients = self->counters->gradients;
+  int done = 0;
+  if (own->blocking != NULL && count <= DVI__BLOCKING_SUBSTEPS)
+    done = verlet_pass_blocked(self, now, before, next, h, count);
+  else if (own->blocking == NULL && own->change == NULL && self->damping == NULL)
+    done = verlet_pass_alone(self, now, before, next, h, count);
+  if (!done) self->counters->gradients = gradients;
+  return done;
 }
 
 static double verlet_traffic(const dvi__stepper *self, int count)

@@ -1,6 +1,7 @@
-/* The loops over coordinates of lanes.c, for vectors of WIDTH numbers, after lanes_width.h. Each
+/* The loops over coordinates of lanes.c, for vectors of WIDTH numbers, after vector_width.h. Each
  * goes on from coordinate i as far as whole vectors reach and returns where it stopped. The rest is
  * for width 1. Every lane does what core and num do for one number, in the same order. */
+#include "num/simd/lanes_width.h"
 
 /* Add as dvi__add_compensated does. */
 INLINE void NAME(add)(NAME(vector) * sum, NAME(vector) * compensation, const NAME(vector) * term)
@@ -39,14 +40,14 @@ INLINE void NAME(add_doubts)(const NAME(mask) * products, int64_t *doubt)
 }
 
 INLINE size_t NAME(kick_drift)(const dvi__kick_drift *whole, size_t i, const int kicks,
-                               const dvi__division by, int64_t *doubt)
+                               const dvi__division by, const int far, int64_t *doubt)
 {
   /* a copy, because the compiler cannot know that no store changes it */
   const dvi__kick_drift l = *whole;
   NAME(mask) doubts = {0};
   for (; i + WIDTH <= l.count; i += WIDTH) {
     NAME(vector) force, p, p_compensation, q, q_compensation, v;
-    if (l.far != DVI__NEAR) NAME(fetch)(&l, i);
+    if (far) NAME(fetch)(&l, i);
     NAME(load)(l.force + i, &force);
     NAME(load)(l.from.p + i, &p);
     NAME(load)(l.from.p_compensation + i, &p_compensation);

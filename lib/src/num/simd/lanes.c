@@ -19,15 +19,7 @@ int dvi__lanes_for(int stages)
 
 enum { FETCH_AHEAD = 1536 }; /* in bytes; half of it is nearly as good */
 
-/* A fused product gives the rounding error of a product. Where the processor has none, the library
- * function gives the same bits. */
-INLINE void split_one(const dvi__fixed_point *s, size_t i)
-{
-  s->start[i] = s->factor[i] * s->p0[i];
-  s->low[i] = __builtin_fma(s->factor[i], s->p0[i], -s->start[i]);
-}
-
-#define LOOPS "num/simd/lanes_width.h"
+#define LOOPS "num/simd/kick_drift_width.h"
 #include "num/simd/each_width.h"
 
 /* Rows of eight lanes are the most common ones, and their few terms are worth knowing at compile
@@ -94,7 +86,7 @@ INLINE void weigh(int n, int stages, const double *weight, double *x)
 
 INLINE void split(const dvi__fixed_point *s)
 {
-  for (size_t i = 0; i < (size_t)s->n; i++) split_one(s, i);
+  for (size_t i = 0; i < (size_t)s->n; i++) split_one1(s, i);
 }
 
 /* The error of p0 + half is Knuth's (1969), sec. 4.2.2. */
@@ -145,24 +137,26 @@ INLINE double largest(size_t count, const double *x)
 }
 
 INLINE int kick_drift_with_kicks(int widest, const dvi__kick_drift *l, const int kicks,
-                                 const dvi__division by)
+                                 const dvi__division by, const int far)
 {
   int64_t doubt = 0;
   size_t i = 0;
   if (widest == 8)
-    i = kick_drift8(l, i, kicks, by, &doubt);
+    i = kick_drift8(l, i, kicks, by, far, &doubt);
   else if (widest == 4)
-    i = kick_drift4(l, i, kicks, by, &doubt);
+    i = kick_drift4(l, i, kicks, by, far, &doubt);
   else
-    i = kick_drift2(l, i, kicks, by, &doubt);
-  (void)kick_drift1(l, i, kicks, by, &doubt);
+    i = kick_drift2(l, i, kicks, by, far, &doubt);
+  (void)kick_drift1(l, i, kicks, by, far, &doubt);
   return (doubt & INT64_MAX) == 0;
 }
 
+/* Only the first operation on a step's state, of one kick, finds it far away. */
 INLINE int kick_drift_with_division(int widest, const dvi__kick_drift *l, const dvi__division by)
 {
-  return l->kicks == 2 ? kick_drift_with_kicks(widest, l, 2, by)
-                       : kick_drift_with_kicks(widest, l, 1, by);
+  return l->kicks == 2         ? kick_drift_with_kicks(widest, l, 2, by, 0)
+         : l->far == DVI__NEAR ? kick_drift_with_kicks(widest, l, 1, by, 0)
+                               : kick_drift_with_kicks(widest, l, 1, by, 1);
 }
 
 INLINE int kick_drift(int widest, const dvi__kick_drift *l)
@@ -454,10 +448,16 @@ int dvi__lanes_last_kick(const dvi__last_kick *last_kick)
   return best()->last_kick(last_kick);
 }
 
+/* So few numbers cost less than the choice of a loop. */
+enum { FEW = 8 };
+
 void dvi__lanes_add_scaled(size_t count, double factor, const double *x, double *sum,
                            double *compensation)
 {
-  best()->add_scaled(count, factor, x, sum, compensation);
+  if (count <= FEW)
+    (void)add_scaled1(0, count, factor, x, sum, compensation);
+  else
+    best()->add_scaled(count, factor, x, sum, compensation);
 }
 
 dvi__division dvi__division_by(double mass, double *scalar)

@@ -1,6 +1,13 @@
 /* The loops of lanes.c for vectors of WIDTH numbers, after vector_width.h. lanes.c includes this
- * header once for each width. */
-#include "num/simd/kick_drift_width.h"
+ * header once for each width, and so does lanes_solve.c. */
+
+/* A fused product gives the rounding error of a product. Where the processor has none, the library
+ * function gives the same bits. */
+INLINE void NAME(split_one)(const dvi__fixed_point *s, size_t i)
+{
+  s->start[i] = s->factor[i] * s->p0[i];
+  s->low[i] = __builtin_fma(s->factor[i], s->p0[i], -s->start[i]);
+}
 
 /* Add matrix_k x_k to sum in WIDTH lanes. */
 INLINE void NAME(add_column)(int lanes, const double *matrix, const double *x, int k,
@@ -195,7 +202,7 @@ INLINE void NAME(begin_eight)(const dvi__fixed_point *iteration, const double *t
     NAME(load)(s->node + b, &c);
     for (size_t i = 0; i < (size_t)s->n; i++) {
       NAME(vector) sum;
-      if (b == 0) split_one(s, i);
+      if (b == 0) NAME(split_one)(s, i);
       NAME(known_row)(8, &columns, g + 8 * i, &sum);
       NAME(place)(s, i, 8, &c, &sum, s->Z + 8 * i + b, s->Q + 8 * i + b, &change, &largest);
     }

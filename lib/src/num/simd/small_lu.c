@@ -33,28 +33,29 @@ INLINE void subtract_four(int first, int end, int step, const double *column, co
                           double *y)
 {
   for (int i = first; i < end; i += BLOCK) {
-    block sum, x[BLOCK];
+    block sum;
     memcpy(&sum, y + i, sizeof sum);
-    for (int k = 0; k < BLOCK; k++) memcpy(x + k, column + k * step + i, sizeof *x);
-    for (int k = 0; k < BLOCK; k++) sum -= (*factor)[k] * x[k];
+    for (int k = 0; k < BLOCK; k++) {
+      block x;
+      memcpy(&x, column + k * step + i, sizeof x);
+      sum -= (*factor)[k] * x;
+    }
     memcpy(y + i, &sum, sizeof sum);
   }
 }
 
-/* Solve with L. */
-INLINE void solve_lower(const dvi__small_lu *lu, double *x)
+/* Replace four numbers from `at` on by those of L^-1, and subtract them from the ones behind. */
+INLINE void eliminate_four(const dvi__small_lu *lu, int at, double *x)
 {
   const int stride = lu->stride;
-  for (int at = 0; at < stride; at += BLOCK) {
-    const double *L = lu->lower + at * stride + at;
-    block y;
-    memcpy(&y, x + at, sizeof y);
-    y[1] -= L[1] * y[0];
-    y[2] = (y[2] - L[2] * y[0]) - L[stride + 2] * y[1];
-    y[3] = ((y[3] - L[3] * y[0]) - L[stride + 3] * y[1]) - L[2 * stride + 3] * y[2];
-    memcpy(x + at, &y, sizeof y);
-    subtract_four(at + BLOCK, stride, stride, lu->lower + at * stride, &y, x);
-  }
+  const double *L = lu->lower + at * stride + at;
+  block y;
+  memcpy(&y, x + at, sizeof y);
+  y[1] -= L[1] * y[0];
+  y[2] = (y[2] - L[2] * y[0]) - L[stride + 2] * y[1];
+  y[3] = ((y[3] - L[3] * y[0]) - L[stride + 3] * y[1]) - L[2 * stride + 3] * y[2];
+  memcpy(x + at, &y, sizeof y);
+  subtract_four(at + BLOCK, stride, stride, lu->lower + at * stride, &y, x);
 }
 
 /* Solve with U. */
@@ -84,19 +85,28 @@ static int row_of_pivot(int n, int k, const double *column)
   return at;
 }
 
-/* Exchange two rows of the columns that are not done, and of L. */
-static void exchange_rows(const dvi__small_lu *lu, int k, int with)
+/* Exchange two numbers of each of some columns. */
+INLINE void exchange(int columns, int stride, double *one, double *other)
 {
-  for (int j = 0; j < lu->n; j++) {
-    double *column = (j < k ? lu->lower : lu->upper) + j * lu->stride;
-    const double kept = column[k];
-    column[k] = column[with];
-    column[with] = kept;
+  for (int j = 0; j < columns; j++, one += stride, other += stride) {
+    const double kept = *one;
+    *one = *other;
+    *other = kept;
   }
 }
 
-/* Make column k one of L and one of U, and subtract it from the columns behind. Gives the pivot. */
-INLINE double factor_column(const dvi__small_lu *lu, int k)
+/* Exchange two rows of L and of the columns that are not done. */
+static void exchange_rows(const dvi__small_lu *lu, int k, int with)
+{
+  const int stride = lu->stride;
+  double *rest = lu->upper + k * stride;
+  exchange(k, stride, lu->lower + k, lu->lower + with);
+  exchange(lu->n - k, stride, rest + k, rest + with);
+}
+
+/* Make column k one of L and one of U, and subtract it from those behind it, up to `end`. Gives the
+ * pivot. */
+INLINE double factor_column(const dvi__small_lu *lu, int k, int end)
 {
   const int n = lu->n, stride = lu->stride, first = k / BLOCK * BLOCK;
   double *column = lu->upper + k * stride, *lower = lu->lower + k * stride;
@@ -107,21 +117,27 @@ INLINE double factor_column(const dvi__small_lu *lu, int k)
   for (int i = first; i < stride; i++) lower[i] = column[i] * inverse;
   for (int i = first; i <= k; i++) lower[i] = 0;
   for (int i = k; i < stride; i++) column[i] = 0;
-  for (int j = k + 1; j < n; j++)
+  for (int j = k + 1; j < end; j++)
     subtract(first, stride, lu->upper[j * stride + k], lower, lu->upper + j * stride);
   return pivot;
 }
 
+/* Four columns at a time are subtracted from those behind. */
 WIDE static double small_lu_factor(const dvi__small_lu *lu)
 {
+  const int n = lu->n;
   double least = HUGE_VAL, most = 0;
-  for (int k = 0; k < lu->n; k++) {
-    const double size = fabs(factor_column(lu, k));
-    if (!(size > 0)) return 0;
-    least = size < least ? size : least;
-    most = size > most ? size : most;
+  for (int at = 0; at < n; at += BLOCK) {
+    const int end = at + BLOCK < n ? at + BLOCK : n;
+    for (int k = at; k < end; k++) {
+      const double size = fabs(factor_column(lu, k, end));
+      if (!(size > 0)) return 0;
+      least = size < least ? size : least;
+      most = size > most ? size : most;
+    }
+    for (int j = end; j < n; j++) eliminate_four(lu, at, lu->upper + j * lu->stride);
   }
-  for (int k = lu->n; k < lu->stride; k++) lu->diagonal[k] = 1;
+  for (int k = n; k < lu->stride; k++) lu->diagonal[k] = 1;
   return least / most;
 }
 
@@ -141,7 +157,7 @@ WIDE static void small_lu_solve(const dvi__small_lu *lu, double *b)
     x[lu->pivot[k]] = x[k];
     x[k] = kept;
   }
-  solve_lower(lu, x);
+  for (int at = 0; at < stride; at += BLOCK) eliminate_four(lu, at, x);
   solve_upper(lu, x);
   memcpy(b, x, (size_t)n * sizeof *b);
 }

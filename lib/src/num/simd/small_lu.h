@@ -5,7 +5,7 @@
 #define DVI_NUM_SIMD_SMALL_LU_H
 
 /* Largest size, and numbers in a block. */
-enum { DVI__SMALL_LU_MOST = 48, DVI__SMALL_LU_BLOCK = 4 };
+enum { DVI__SMALL_LU_MOST = 96, DVI__SMALL_LU_BLOCK = 4 };
 
 typedef struct dvi__small_lu {
   int n, stride;    /* stride is n, rounded up to whole blocks */

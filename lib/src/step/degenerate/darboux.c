@@ -8,6 +8,8 @@
 #include "step/joint.h"
 #include "core/memory.h"
 #include "core/status.h"
+#include "num/simd/wide.h"
+#include "num/simd/width.h"
 #include "system/term/constant_components.h"
 #include "system/dynamics/one_form.h"
 
@@ -20,6 +22,10 @@ struct dvi__darboux {
   int *is_x;                              /* [n] */
   int collocates;                         /* the nodes are those of Gauss */
   double a[MOST][MOST], abar[MOST][MOST]; /* row m-1 holds the weights */
+  /* the same by columns, padded with zeros, and the matrix 1 */
+  double a_by_columns[MOST][MOST], abar_by_columns[MOST][MOST], unit[MOST][MOST];
+  double ratio; /* the lengths of steps for which `shift` continues the stages, 0 if none */
+  double shift[MOST][MOST];
   /* time of a stage in the step for H, and for guesses the mean of the times of x and p */
   double time[MOST], middle[MOST];
   dvi__pattern joint, pattern; /* joint is the pattern of one block, pattern that of the Jacobian */
@@ -44,6 +50,11 @@ static void darboux_complete(dvi__darboux *d, const double *b)
     for (int j = 0; j < s; j++) d->abar[i][j] = b[j] - b[j] * d->a[j][i] / b[i];
   for (int j = 0; j < s; j++) d->a[s][j] = d->abar[s][j] = b[j];
   for (int k = 0; k <= s; k++) {
+    d->unit[k][k] = 1;
+    for (int j = 0; j <= s; j++) {
+      d->a_by_columns[j][k] = d->a[k][j];
+      d->abar_by_columns[j][k] = d->abar[k][j];
+    }
     for (int j = 0; j < s; j++) d->time[k] += d->a[k][j];
     for (int j = 0; j < s; j++) d->middle[k] += 0.5 * (d->a[k][j] + d->abar[k][j]);
   }
@@ -229,42 +240,75 @@ typedef struct entry {
   double A[MOST], B[MOST], K[MOST];
 } entry;
 
-static entry darboux_gather_entry(const dvi__darboux *d, const dvi__joint_entry *where)
+static void darboux_gather_entry(const dvi__darboux *d, const dvi__joint_entry *where, entry *e)
 {
-  entry e = {{0}, {0}, {0}};
+  *e = (entry){{0}, {0}, {0}};
   for (int k = 0; k < d->m; k++) {
-    if (where->vq >= 0) e.A[k] = d->H_qv[where->vq * d->m + k];
-    if (where->qv >= 0) e.B[k] = d->H_qv[where->qv * d->m + k];
-    if (where->qq >= 0) e.K[k] = d->h * d->H_qq[where->qq * d->m + k];
+    if (where->vq >= 0) e->A[k] = d->H_qv[where->vq * d->m + k];
+    if (where->qv >= 0) e->B[k] = d->H_qv[where->qv * d->m + k];
+    if (where->qq >= 0) e->K[k] = d->h * d->H_qq[where->qq * d->m + k];
   }
-  return e;
 }
 
-/* Fill the rows of a block in column l. The unknown of x is W_l, which moves all X_k by a_kl. The
- * unknown of y is Y_l alone. */
-static void fill_column(const dvi__darboux *d, const entry *e, int row_is_x, int column_is_x, int l,
+/* Fill the rows of a block in column l of x, whose unknown W_l moves all X_k by a_kl. The stages
+ * are lanes. */
+INLINE void column_of_x(const dvi__darboux *d, const entry *e, int row_is_x, int l, const int lanes,
                         double *column)
 {
-  double moved[MOST], F[MOST];
-  for (int k = 0; k < d->m; k++) {
-    moved[k] = column_is_x ? d->a[k][l] : k == l;
-    F[k] = e->K[k] * moved[k] + (column_is_x && k == l ? e->B[k] : 0);
+  double F[MOST] = {0}, rows[MOST];
+  const double *moved = d->a_by_columns[l];
+  for (int k = 0; k < lanes; k++) F[k] = e->K[k] * moved[k] + e->B[k] * d->unit[l][k];
+  for (int k = 0; k < lanes; k++) rows[k] = row_is_x ? e->A[k] * moved[k] : F[k];
+  for (int j = 0; j < d->m && row_is_x; j++)
+    for (int k = 0; k < lanes; k++) rows[k] -= F[j] * d->abar_by_columns[j][k];
+  memcpy(column, rows, (size_t)d->m * sizeof *rows);
+}
+
+/* The same in a column of y, whose unknown is Y_l alone. */
+INLINE void column_of_y(const dvi__darboux *d, const entry *e, int row_is_x, int l, const int lanes,
+                        double *column)
+{
+  double rows[MOST];
+  for (int k = 0; k < lanes; k++) {
+    const double at = d->unit[l][k];
+    rows[k] = row_is_x ? e->A[k] * at - e->K[l] * d->abar_by_columns[l][k] : e->K[k] * at;
   }
-  for (int k = 0; k < d->m; k++)
-    column[k] = row_is_x ? e->A[k] * moved[k] - darboux_dot(d->m, d->abar[k], F) : F[k];
+  memcpy(column, rows, (size_t)d->m * sizeof *rows);
+}
+
+INLINE void block_columns(const dvi__darboux *d, const entry *e, int row_is_x, int column_is_x,
+                          const int lanes, size_t step, double *columns)
+{
+  for (int l = 0; l < d->m; l++, columns += step)
+    if (column_is_x)
+      column_of_x(d, e, row_is_x, l, lanes, columns);
+    else
+      column_of_y(d, e, row_is_x, l, lanes, columns);
+}
+
+/* Fill all columns of a block, which are `step` numbers apart. */
+WIDE static void fill_block(const dvi__darboux *d, const entry *e, int row_is_x, int column_is_x,
+                            size_t step, double *columns)
+{
+  if (d->m <= MOST / 2)
+    block_columns(d, e, row_is_x, column_is_x, MOST / 2, step, columns);
+  else
+    block_columns(d, e, row_is_x, column_is_x, MOST, step, columns);
 }
 
 dvi_status dvi__darboux_jacobian(dvi__darboux *d, const double *x, double *values)
 {
+  const size_t m = (size_t)d->m;
   darboux_points(d, x);
   DVI_TRY(dvi__lagrangian_hessian(d->evaluator, d->m, d->t, d->Q, d->V, d->H_qq, d->H_qv, d->H_vv));
   for (int j = 0; j < d->n; j++) {
-    const int first = d->joint.start[j], last = d->joint.start[j + 1];
-    for (int l = 0; l < d->m; l++)
-      for (int at = first; at < last; at++, values += d->m) {
-        const entry e = darboux_gather_entry(d, &d->block[at]);
-        fill_column(d, &e, d->is_x[d->joint.row[at]], d->is_x[j], l, values);
-      }
+    const int first = d->joint.start[j], length = d->joint.start[j + 1] - first;
+    for (int at = 0; at < length; at++) {
+      entry e;
+      darboux_gather_entry(d, &d->block[first + at], &e);
+      fill_block(d, &e, d->is_x[d->joint.row[first + at]], d->is_x[j], (size_t)length * m,
+                 values + m * m * (size_t)first + m * (size_t)at);
+    }
   }
   return DVI_OK;
 }
@@ -286,19 +330,20 @@ void dvi__darboux_straight(const dvi__darboux *d, const double *v, double *x)
 
 /* Continue the polynomial through the stages. Only Gauss's stages lie close enough to the solution
  * for this. */
-static void continue_polynomial(const dvi__darboux *d, double ratio, const double *last, double *x)
+static void continue_polynomial(dvi__darboux *d, double ratio, const double *last, double *x)
 {
+  for (int k = 0; k < d->m && ratio != d->ratio; k++)
+    dvi__lagrange_weights(d->m, d->middle, 1 + ratio * d->middle[k], d->shift[k]);
+  d->ratio = ratio;
   for (int k = 0; k < d->m; k++) {
-    double weight[MOST];
-    dvi__lagrange_weights(d->m, d->middle, 1 + ratio * d->middle[k], weight);
     for (int i = 0; i < d->n; i++) {
-      const double *own = last + i * d->m, continued = darboux_dot(d->m, weight, own);
+      const double *own = last + i * d->m, continued = darboux_dot(d->m, d->shift[k], own);
       x[i * d->m + k] = d->is_x[i] ? ratio * continued : continued - own[d->m - 1];
     }
   }
 }
 
-void dvi__darboux_continue(const dvi__darboux *d, double ratio, const double *last, double *x)
+void dvi__darboux_continue(dvi__darboux *d, double ratio, const double *last, double *x)
 {
   if (d->collocates) {
     continue_polynomial(d, ratio, last, x);

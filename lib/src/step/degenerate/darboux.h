@@ -60,7 +60,6 @@ void dvi__darboux_end(const dvi__darboux *darboux, const double *x, double *dq);
 /* Write x for a straight line along v [n]. dvi__darboux_continue continues the x of the last step,
  * with ratio = h_next / h_last. */
 void dvi__darboux_straight(const dvi__darboux *darboux, const double *v, double *x);
-void dvi__darboux_continue(const dvi__darboux *darboux, double ratio, const double *last,
-                           double *x);
+void dvi__darboux_continue(dvi__darboux *darboux, double ratio, const double *last, double *x);
 
 #endif

@@ -1,44 +1,17 @@
-#include "step/degenerate/discontinuous.h"
+#include "step/degenerate/discontinuous_struct.h"
 
 #include <dvi/basis.h>
 #include <dvi/quadrature.h>
 #include <math.h>
 #include <string.h>
 
-#include "step/joint.h"
 #include "core/memory.h"
 #include "core/status.h"
+#include "num/simd/wide.h"
+#include "num/simd/width.h"
 #include "system/dynamics/one_form.h"
 
 enum { MOST = DVI__DG_POINTS_MOST };
-
-struct dvi__discontinuous {
-  const dvi_system *system;
-  dvi__evaluator *evaluator;
-  int n, S, r, points;
-  /* nodes of the basis; phi_k and phi_k' at c_i, stored as [k][i] */
-  double node[MOST], phi[MOST][MOST], dphi[MOST][MOST];
-  double b[MOST], c[MOST];
-  double side[MOST], weight[MOST]; /* points of the path 1/2 + s_g, and weights w_g */
-  double lean;                     /* sum_g w_g s_g */
-  dvi__pattern joint, pattern; /* joint is the pattern of one block, pattern that of the Jacobian */
-  dvi__joint_entry *block;     /* [entries of joint] */
-  int stiff;                   /* c is not 0 */
-  double *c_diagonal;          /* [n] diagonal of c */
-  /* The current step. */
-  double h;
-  dvi__dg_node from;
-  /* [n] dN/dq+ at the start; diagonal of c with the sign of h */
-  double *left, *stiffness;
-  /* [n*r] values at c_i, component by component */
-  double *t, *Q, *V, *L_q, *L_v, *H_qq, *H_qv, *H_vv;
-  /* [n*S] coefficients relative to q*; [n] jump at the end */
-  double *Y, *u;
-  /* [n] values at one point of a path: the point, alpha, (Dalpha)^T u; and dN/dq- of all points */
-  double *y, *alpha, *gradient, *flux;
-  /* Hessians at the points of the path, entry by entry [entries*points]; Hessians at one point */
-  double *qq, *qv, *one_qq, *one_qv;
-};
 
 /* ---- tables ---- */
 
@@ -63,6 +36,8 @@ static dvi_status fill_basis(dvi__discontinuous *e)
     for (int k = 0; k < e->S; k++) {
       e->phi[k][i] = value[k];
       e->dphi[k][i] = derivative[k];
+      e->weighted[i][k] = e->b[i] * value[k];
+      e->weighted_slope[i][k] = e->b[i] * derivative[k];
     }
   }
   return DVI_OK;
@@ -116,6 +91,7 @@ static dvi_status discontinuous_initialise(dvi__discontinuous *e, const dvi__dg_
   DVI_TRY(dvi__joint_create(e->system, NULL, &e->joint, &e->block));
   DVI_TRY(dvi__pattern_blocks(&e->joint, e->S, &e->pattern));
   DVI_TRY(discontinuous_allocate(e));
+  DVI_TRY(dvi__discontinuous_create_inverse(e));
   e->stiff = space->stiffness_count > 0;
   for (int i = 0; e->stiff && i < e->n; i++)
     e->c_diagonal[i] = space->stiffness[space->stiffness_count > 1 ? i : 0];
@@ -145,6 +121,7 @@ void dvi__discontinuous_destroy(dvi__discontinuous **element)
   for (int i = 0; discontinuous_owned_array(e, i) != NULL; i++)
     dvi__release(*discontinuous_owned_array(e, i));
   dvi__evaluator_destroy(&e->evaluator);
+  dvi__discontinuous_destroy_inverse(e);
   dvi__pattern_clear(&e->joint);
   dvi__pattern_clear(&e->pattern);
   dvi__release(e->block);
@@ -205,122 +182,77 @@ static double discontinuous_dot(int count, const double *x, const double *y)
   return sum;
 }
 
-static void discontinuous_spread(dvi__discontinuous *e, const double *x)
+/* Compute the polynomial and its slope at the nodes, which are lanes. */
+INLINE void values_in_lanes(const dvi__discontinuous *e, const double *Y, const int lanes,
+                            double *values, double *slopes)
 {
-  const size_t S = (size_t)e->S, r = (size_t)e->r;
-  for (size_t i = 0; i < (size_t)e->n; i++, x += S) {
-    double *Y = e->Y + i * S;
-    memcpy(Y + 1, x, (S - 1) * sizeof *Y);
+  double value[MOST] = {0}, slope[MOST] = {0};
+  for (int l = 0; l < e->S; l++)
+    for (int k = 0; k < lanes; k++) {
+      value[k] += e->phi[l][k] * Y[l];
+      slope[k] += e->dphi[l][k] * Y[l];
+    }
+  memcpy(values, value, (size_t)lanes * sizeof *value);
+  memcpy(slopes, slope, (size_t)lanes * sizeof *slope);
+}
+
+WIDE static void values_at_nodes(const dvi__discontinuous *e, const double *Y, double values[MOST],
+                                 double slopes[MOST])
+{
+  if (e->r <= MOST / 2)
+    values_in_lanes(e, Y, MOST / 2, values, slopes);
+  else
+    values_in_lanes(e, Y, MOST, values, slopes);
+}
+
+void dvi__discontinuous_spread(dvi__discontinuous *e, const double *x)
+{
+  const int S = e->S, r = e->r;
+  for (int i = 0; i < e->n; i++, x += S) {
+    double *Y = e->Y + i * S, value[MOST], slope[MOST];
+    for (int k = 1; k < S; k++) Y[k] = x[k - 1];
     e->u[i] = x[S - 1];
-    for (size_t k = 0; k < r; k++) {
-      double value = 0, slope = 0;
-      for (size_t l = 0; l < S; l++) {
-        value += e->phi[l][k] * Y[l];
-        slope += e->dphi[l][k] * Y[l];
-      }
-      e->Q[i * r + k] = e->from.q[i] + value;
-      e->V[i * r + k] = slope / e->h;
+    values_at_nodes(e, Y, value, slope);
+    for (int k = 0; k < r; k++) {
+      e->Q[i * r + k] = e->from.q[i] + value[k];
+      e->V[i * r + k] = slope[k] / e->h;
     }
   }
+}
+
+/* Sum the rows of a component over the nodes. The rows are lanes. */
+INLINE void rows_in_lanes(const dvi__discontinuous *e, const double *L_q, const double *L_v,
+                          double p, const int lanes, double *row)
+{
+  double sum[MOST] = {0};
+  for (int l = 0; l < e->r; l++) {
+    const double impulse = e->h * L_q[l], momentum = L_v[l] - p;
+    for (int k = 0; k < lanes; k++)
+      sum[k] += e->weighted[l][k] * impulse + e->weighted_slope[l][k] * momentum;
+  }
+  memcpy(row, sum, (size_t)e->S * sizeof *sum);
+}
+
+WIDE static void rows_of_component(const dvi__discontinuous *e, const double *L_q,
+                                   const double *L_v, double p, double *row)
+{
+  if (e->S <= MOST / 2)
+    rows_in_lanes(e, L_q, L_v, p, MOST / 2, row);
+  else
+    rows_in_lanes(e, L_q, L_v, p, MOST, row);
 }
 
 dvi_status dvi__discontinuous_residual(dvi__discontinuous *e, const double *x, double *R)
 {
   const size_t S = (size_t)e->S, r = (size_t)e->r;
-  discontinuous_spread(e, x);
+  dvi__discontinuous_spread(e, x);
   DVI_TRY(dvi__lagrangian_gradient(e->evaluator, e->r, e->t, e->Q, e->V, e->L_q, e->L_v));
   DVI_TRY(node_gradient(e, e->Y + S - 1, e->S, e->u, 0, e->flux));
   for (size_t i = 0; i < (size_t)e->n; i++) {
     double *row = R + i * S;
-    for (size_t k = 0; k < S; k++) {
-      row[k] = 0;
-      for (size_t l = 0; l < r; l++)
-        row[k] += e->b[l] * (e->h * e->phi[k][l] * e->L_q[i * r + l] +
-                             e->dphi[k][l] * (e->L_v[i * r + l] - e->from.p[i]));
-    }
+    rows_of_component(e, e->L_q + i * r, e->L_v + i * r, e->from.p[i], row);
     row[0] += e->left[i];
     row[S - 1] += e->flux[i];
-  }
-  return DVI_OK;
-}
-
-/* ---- Jacobian ---- */
-
-static dvi_status hessians_on_path(dvi__discontinuous *e)
-{
-  const int qq = dvi__pattern_entries(&e->system->qq), qv = dvi__pattern_entries(&e->system->qv);
-  for (int g = 0; g < e->points; g++) {
-    for (int i = 0; i < e->n; i++)
-      e->y[i] = e->from.q[i] + (e->Y[(i + 1) * e->S - 1] + e->side[g] * e->u[i]);
-    DVI_TRY(dvi__form_hessian(e->evaluator, e->y, e->u, e->one_qq, e->one_qv));
-    for (int k = 0; k < qq; k++) e->qq[k * e->points + g] = e->one_qq[k];
-    for (int k = 0; k < qv; k++) e->qv[k * e->points + g] = e->one_qv[k];
-  }
-  return DVI_OK;
-}
-
-/* An entry (i,j) of the joint pattern has d alpha_i/dq_j (A), d alpha_j/dq_i (B) and h d2L/dq2 (K)
- * at c_i, and the derivatives of dN/dq- by q- and by the jump. */
-typedef struct entry {
-  double A[MOST], B[MOST], K[MOST];
-  double by_trace, by_jump;
-} entry;
-
-static double discontinuous_at(const double *values, int where, int count, int point)
-{
-  return where >= 0 ? values[where * count + point] : 0;
-}
-
-static void discontinuous_gather(const dvi__discontinuous *e, const dvi__joint_entry *where,
-                                 double stiffness, entry *out)
-{
-  for (int k = 0; k < e->r; k++) {
-    out->A[k] = discontinuous_at(e->H_qv, where->vq, e->r, k);
-    out->B[k] = discontinuous_at(e->H_qv, where->qv, e->r, k);
-    out->K[k] = e->h * discontinuous_at(e->H_qq, where->qq, e->r, k);
-  }
-  out->by_trace = 0;
-  out->by_jump = -stiffness;
-  for (int g = 0; g < e->points; g++) {
-    const double A = discontinuous_at(e->qv, where->vq, e->points, g),
-                 B = discontinuous_at(e->qv, where->qv, e->points, g);
-    const double H = discontinuous_at(e->qq, where->qq, e->points, g), plus = e->side[g],
-                 minus = 1 - plus;
-    out->by_trace += e->weight[g] * (minus * H - A);
-    out->by_jump += e->weight[g] * (plus * minus * H + minus * B - plus * A);
-  }
-}
-
-/* Fill the rows of a block in the column of the coefficient X_l, 0 < l. */
-static void coefficient_column(const dvi__discontinuous *e, const entry *of, int l, double *column)
-{
-  for (int k = 0; k < e->S; k++) {
-    column[k] = 0;
-    for (int i = 0; i < e->r; i++)
-      column[k] += e->b[i] * (e->phi[k][i] * (e->phi[l][i] * of->K[i] + e->dphi[l][i] * of->B[i]) +
-                              e->dphi[k][i] * e->phi[l][i] * of->A[i]);
-  }
-  if (l == e->S - 1) column[l] += of->by_trace;
-}
-
-dvi_status dvi__discontinuous_jacobian(dvi__discontinuous *e, const double *x, double *values)
-{
-  const size_t S = (size_t)e->S;
-  discontinuous_spread(e, x);
-  DVI_TRY(dvi__lagrangian_hessian(e->evaluator, e->r, e->t, e->Q, e->V, e->H_qq, e->H_qv, e->H_vv));
-  DVI_TRY(hessians_on_path(e));
-  for (int j = 0; j < e->n; j++) {
-    const size_t first = (size_t)e->joint.start[j], length = (size_t)e->joint.start[j + 1] - first;
-    for (size_t k = 0; k < length; k++) {
-      entry of;
-      double *columns = values + S * S * first + k * S, *last = columns + (S - 1) * length * S;
-      discontinuous_gather(e, &e->block[first + k],
-                           e->joint.row[first + k] == j ? e->stiffness[j] : 0, &of);
-      for (int l = 1; l < e->S; l++)
-        coefficient_column(e, &of, l, columns + (size_t)(l - 1) * length * S);
-      memset(last, 0, S * sizeof *last);
-      last[S - 1] = of.by_jump;
-    }
   }
   return DVI_OK;
 }
@@ -353,7 +285,7 @@ dvi_status dvi__discontinuous_end(dvi__discontinuous *e, const double *x, double
                                   double *offset, double *coefficients)
 {
   const int S = e->S;
-  discontinuous_spread(e, x);
+  dvi__discontinuous_spread(e, x);
   for (int i = 0; i < e->n; i++) {
     dq[i] = e->Y[(i + 1) * S - 1] + 0.5 * e->u[i];
     e->y[i] = e->from.q[i] + dq[i];
@@ -406,7 +338,7 @@ dvi_status dvi__discontinuous_settle(dvi__discontinuous *e, const double *x, dou
                                      double *offset)
 {
   const int even = e->S % 2 == 0;
-  discontinuous_spread(e, x);
+  dvi__discontinuous_spread(e, x);
   for (int i = 0; i < e->n; i++) {
     e->u[i] -= jump[i];
     e->y[i] = e->from.q[i] + offset[i];
@@ -430,15 +362,17 @@ void dvi__discontinuous_straight(const dvi__discontinuous *e, const double *v, d
   }
 }
 
-void dvi__discontinuous_continue(const dvi__discontinuous *e, double ratio,
-                                 const double *coefficients, double *x)
+void dvi__discontinuous_continue(dvi__discontinuous *e, double ratio, const double *coefficients,
+                                 double *x)
 {
-  for (int k = 1; k < e->S; k++) {
-    double weight[MOST];
-    for (int l = 0; l < e->S; l++) weight[l] = discontinuous_lagrange(e, l, 1 + ratio * e->node[k]);
-    for (int i = 0; i < e->n; i++)
-      x[i * e->S + k - 1] = e->from.jump[i] +
-                            discontinuous_dot(e->S, weight, coefficients + i * e->S);
+  const int S = e->S;
+  for (int k = 1; k < S && ratio != e->ratio; k++)
+    for (int l = 0; l < S; l++)
+      e->shift[k][l] = discontinuous_lagrange(e, l, 1 + ratio * e->node[k]);
+  e->ratio = ratio;
+  for (int i = 0; i < e->n; i++, coefficients += S, x += S) {
+    for (int k = 1; k < S; k++)
+      x[k - 1] = e->from.jump[i] + discontinuous_dot(S, e->shift[k], coefficients);
+    x[S - 1] = e->from.jump[i];
   }
-  for (int i = 0; i < e->n; i++) x[(i + 1) * e->S - 1] = e->from.jump[i];
 }

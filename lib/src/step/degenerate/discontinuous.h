@@ -67,6 +67,13 @@ dvi_status dvi__discontinuous_residual(dvi__discontinuous *element, const double
 dvi_status dvi__discontinuous_jacobian(dvi__discontinuous *element, const double *x,
                                        double *values);
 
+/* The same in parts. dvi__discontinuous_invert evaluates the second derivatives at x, and tells
+ * whether dvi__discontinuous_correct can replace r by J^-1 r. If it cannot,
+ * dvi__discontinuous_fill writes the Jacobian. */
+dvi_status dvi__discontinuous_invert(dvi__discontinuous *element, const double *x, int *inverted);
+void dvi__discontinuous_correct(dvi__discontinuous *element, double *r);
+void dvi__discontinuous_fill(dvi__discontinuous *element, double *values);
+
 /* Write the size of the rows per unit of an unknown, from the gradients of alpha at q* and the
  * stiffness. */
 dvi_status dvi__discontinuous_scale(dvi__discontinuous *element, double *scale);
@@ -89,7 +96,7 @@ dvi_status dvi__discontinuous_settle(dvi__discontinuous *element, const double *
 /* Write x for the velocity v [n]. dvi__discontinuous_continue continues the coefficients of the
  * last element, relative to its end, with ratio = h_next / h_last. */
 void dvi__discontinuous_straight(const dvi__discontinuous *element, const double *v, double *x);
-void dvi__discontinuous_continue(const dvi__discontinuous *element, double ratio,
+void dvi__discontinuous_continue(dvi__discontinuous *element, double ratio,
                                  const double *coefficients, double *x);
 
 #endif

@@ -1,48 +1,15 @@
-#include "step/degenerate/partitioned.h"
+#include "step/degenerate/partitioned_struct.h"
 
 #include <dvi/quadrature.h>
 #include <math.h>
 #include <string.h>
 
-#include "step/onestep/collocation.h"
-#include "step/joint.h"
 #include "core/memory.h"
 #include "core/status.h"
 #include "num/simd/wide.h"
 #include "num/simd/width.h"
+#include "step/degenerate/stage_inverse.h"
 #include "system/dynamics/one_form.h"
-
-/* The kicks are k0 = before lambda + carried times the last lambda, and k1 = after lambda. Their
- * directions are taken at the mean of q0 and q1, or at the ends. */
-typedef struct kicks {
-  double before, carried, after;
-  int has_multiplier, at_mean;
-} kicks;
-
-struct dvi__partitioned {
-  const dvi_system *system;
-  dvi__evaluator *evaluator;
-  int n, s, m; /* coordinates, stages, unknowns of a coordinate */
-  double a[DVI__STAGES_MOST][DVI__STAGES_MOST], abar[DVI__STAGES_MOST][DVI__STAGES_MOST],
-      b[DVI__STAGES_MOST], c[DVI__STAGES_MOST];
-  /* the same by columns, padded with zeros */
-  double a_by_columns[DVI__STAGES_MOST][DVI__STAGES_MOST],
-      abar_by_columns[DVI__STAGES_MOST][DVI__STAGES_MOST];
-  double ratio; /* the lengths of steps for which `shift` continues the velocities, 0 if none */
-  double shift[DVI__STAGES_MOST][DVI__STAGES_MOST];
-  kicks kick;
-  dvi__pattern joint, pattern; /* joint is the pattern of one block, pattern that of the Jacobian */
-  dvi__joint_entry *block;     /* [entries of joint] */
-  /* The current step. */
-  double t0, h;
-  const double *q0, *p0, *carried;
-  /* Values at the stages, component by component [n*s]. */
-  double *t, *Q, *V, *L_q, *L_v, *H_qq, *H_qv, *H_vv;
-  /* Values at the ends, [n] each. These are the kicks, their effect on p, the increments of q
-   * before k1 and in all, the points, and alpha at q1. */
-  double *k0, *k1, *K0, *K1, *dq, *q1, *mean, *alpha1, *dp, *unwanted;
-  double *qq0, *qv0, *qq1, *qv1, *qv_end, *qq_end; /* Hessians at the ends */
-};
 
 /* ---- tableaux ---- */
 
@@ -129,6 +96,9 @@ static dvi_status partitioned_initialise(dvi__partitioned *p, dvi__tableau table
   DVI_TRY(dvi__evaluator_create(p->system, p->s, DVI__HESSIANS, counters, &p->evaluator));
   DVI_TRY(dvi__joint_create(p->system, NULL, &p->joint, &p->block));
   DVI_TRY(dvi__pattern_blocks(&p->joint, p->m, &p->pattern));
+  const int is_conjugate = tableau != DVI__LOBATTO_IIIB_A;
+  if (is_conjugate && (p->system->terms & DVI__ONE_FORM))
+    DVI_TRY(dvi__partitioned_create_inverse(p));
   return partitioned_allocate(p);
 }
 
@@ -157,6 +127,7 @@ void dvi__partitioned_destroy(dvi__partitioned **partitioned)
   for (int i = 0; partitioned_owned_array(p, i) != NULL; i++)
     dvi__release(*partitioned_owned_array(p, i));
   dvi__evaluator_destroy(&p->evaluator);
+  dvi__stage_inverse_destroy(&p->inverse);
   dvi__pattern_clear(&p->joint);
   dvi__pattern_clear(&p->pattern);
   dvi__release(p->block);
@@ -182,45 +153,65 @@ void dvi__partitioned_place(dvi__partitioned *p, double t0, double h, const doub
   p->q0 = q0;
   p->p0 = p0;
   p->carried = carried;
+  p->has_gradients = 0;
   for (int i = 0; i < p->s; i++) p->t[i] = t0 + p->c[i] * h;
 }
 
 /* ---- points ---- */
 
-static double partitioned_dot(int count, const double *x, const double *y)
+/* Compute the product of a matrix, by columns, and x [s]. The stages are lanes. */
+INLINE void product_in_lanes(int s, const int lanes,
+                             double matrix[DVI__STAGES_MOST][DVI__STAGES_MOST], const double *x,
+                             double *y)
 {
-  double sum = 0;
-  for (int j = 0; j < count; j++) sum += x[j] * y[j];
-  return sum;
+  double sum[DVI__STAGES_MOST] = {0};
+  for (int l = 0; l < s; l++)
+    for (int k = 0; k < lanes; k++) sum[k] += matrix[l][k] * x[l];
+  for (int k = 0; k < lanes; k++) y[k] = sum[k];
+}
+
+WIDE static void stage_product(int s, double matrix[DVI__STAGES_MOST][DVI__STAGES_MOST],
+                               const double *x, double *y)
+{
+  if (s <= DVI__STAGES_MOST / 2)
+    product_in_lanes(s, DVI__STAGES_MOST / 2, matrix, x, y);
+  else
+    product_in_lanes(s, DVI__STAGES_MOST, matrix, x, y);
 }
 
 /* Compute the points. The increments before the kicks are summed first, so that q0, the large
  * number, comes last. */
-static void partitioned_points(dvi__partitioned *p, const double *x)
+void dvi__partitioned_points(dvi__partitioned *p, const double *x)
 {
   const kicks *kick = &p->kick;
-  const size_t s = (size_t)p->s;
-  for (size_t i = 0; i < (size_t)p->n; i++, x += p->m) {
-    const double lambda = kick->has_multiplier ? x[p->s] : 0;
+  const int s = p->s;
+  for (int i = 0; i < p->n; i++, x += p->m) {
+    const double lambda = kick->has_multiplier ? x[s] : 0;
+    double moved[DVI__STAGES_MOST], *Q = p->Q + i * s, *V = p->V + i * s;
+    stage_product(s, p->a_by_columns, x, moved);
     p->k0[i] = kick->before * lambda + kick->carried * p->carried[i];
     p->k1[i] = kick->after * lambda;
-    for (size_t k = 0; k < s; k++) p->V[i * s + k] = x[k] / p->h;
-    for (size_t k = 0; k < s; k++)
-      p->Q[i * s + k] = p->q0[i] + (p->k0[i] + partitioned_dot(p->s, p->a[k], x));
-    p->dq[i] = p->k0[i] + partitioned_dot(p->s, p->b, x) + p->k1[i];
+    for (int k = 0; k < s; k++) {
+      V[k] = x[k] / p->h;
+      Q[k] = p->q0[i] + (p->k0[i] + moved[k]);
+    }
+    p->dq[i] = p->k0[i] + partitioned_dot(s, p->b, x) + p->k1[i];
     p->q1[i] = p->q0[i] + p->dq[i];
     p->mean[i] = p->q0[i] + 0.5 * p->dq[i];
   }
 }
 
-static const double *place_of_k0(const dvi__partitioned *p)
+/* Compute the effect on p of the kick k0, whose derivatives the Jacobian of this step may have
+ * left. */
+static dvi_status kick_at_start(dvi__partitioned *p)
 {
-  return p->kick.at_mean ? p->mean : p->q0;
-}
-
-static const double *place_of_k1(const dvi__partitioned *p)
-{
-  return p->kick.at_mean ? p->mean : p->q1;
+  const dvi__pattern *qv = &p->system->qv;
+  if (!p->has_gradients)
+    return dvi__form_gradient(p->evaluator, p->kick.at_mean ? p->mean : p->q0, p->k0, p->K0,
+                              p->unwanted);
+  for (int j = 0; j < p->n; j++)
+    for (int e = qv->start[j]; e < qv->start[j + 1]; e++) p->K0[qv->row[e]] += p->k0[j] * p->qv0[e];
+  return DVI_OK;
 }
 
 /* Compute K0 and K1 where there are kicks, and alpha(q1). */
@@ -231,8 +222,7 @@ static dvi_status partitioned_ends(dvi__partitioned *p)
   memset(p->K0, 0, bytes);
   memset(p->K1, 0, bytes);
   if (!kick->has_multiplier) return DVI_OK;
-  if (kick->before != 0 || kick->carried != 0)
-    DVI_TRY(dvi__form_gradient(p->evaluator, place_of_k0(p), p->k0, p->K0, p->unwanted));
+  if (kick->before != 0 || kick->carried != 0) DVI_TRY(kick_at_start(p));
   DVI_TRY(dvi__form_gradient(p->evaluator, p->q1, p->k1, p->K1, p->alpha1));
   return kick->at_mean ? dvi__form_gradient(p->evaluator, p->mean, p->k1, p->K1, p->unwanted)
                        : DVI_OK;
@@ -240,15 +230,16 @@ static dvi_status partitioned_ends(dvi__partitioned *p)
 
 dvi_status dvi__partitioned_residual(dvi__partitioned *p, const double *x, double *R)
 {
-  const size_t s = (size_t)p->s, m = (size_t)p->m;
-  partitioned_points(p, x);
-  DVI_TRY(dvi__lagrangian_gradient(p->evaluator, p->s, p->t, p->Q, p->V, p->L_q, p->L_v));
+  const int s = p->s, m = p->m;
+  dvi__partitioned_points(p, x);
+  DVI_TRY(dvi__lagrangian_gradient(p->evaluator, s, p->t, p->Q, p->V, p->L_q, p->L_v));
   DVI_TRY(partitioned_ends(p));
-  for (size_t i = 0; i < (size_t)p->n; i++) {
+  for (int i = 0; i < p->n; i++) {
     const double *F = p->L_q + i * s, *alpha = p->L_v + i * s;
-    for (size_t k = 0; k < s; k++)
-      R[i * m + k] = (alpha[k] - p->p0[i]) - p->K0[i] - p->h * partitioned_dot(p->s, p->abar[k], F);
-    p->dp[i] = p->K0[i] + p->h * partitioned_dot(p->s, p->b, F) + p->K1[i];
+    double pushed[DVI__STAGES_MOST];
+    stage_product(s, p->abar_by_columns, F, pushed);
+    for (int k = 0; k < s; k++) R[i * m + k] = (alpha[k] - p->p0[i]) - p->K0[i] - p->h * pushed[k];
+    p->dp[i] = p->K0[i] + p->h * partitioned_dot(s, p->b, F) + p->K1[i];
     if (p->kick.has_multiplier) R[i * m + s] = (p->p0[i] - p->alpha1[i]) + p->dp[i];
   }
   return DVI_OK;
@@ -256,119 +247,9 @@ dvi_status dvi__partitioned_residual(dvi__partitioned *p, const double *x, doubl
 
 void dvi__partitioned_ends(dvi__partitioned *p, const double *x, double *dq, double *dp)
 {
-  partitioned_points(p, x);
+  dvi__partitioned_points(p, x);
   memcpy(dq, p->dq, (size_t)p->n * sizeof *dq);
   memcpy(dp, p->dp, (size_t)p->n * sizeof *dp);
-}
-
-/* ---- Jacobian ---- */
-
-static dvi_status hessians_at_ends(dvi__partitioned *p)
-{
-  if (!p->kick.has_multiplier) return DVI_OK;
-  DVI_TRY(dvi__form_hessian(p->evaluator, place_of_k0(p), p->k0, p->qq0, p->qv0));
-  DVI_TRY(dvi__form_hessian(p->evaluator, place_of_k1(p), p->k1, p->qq1, p->qv1));
-  if (p->kick.at_mean) return dvi__form_hessian(p->evaluator, p->q1, p->k1, p->qq_end, p->qv_end);
-  memcpy(p->qv_end, p->qv1, (size_t)dvi__pattern_entries(&p->system->qv) * sizeof(double));
-  return DVI_OK;
-}
-
-static double partitioned_at(const double *values, int entry)
-{
-  return entry >= 0 ? values[entry] : 0;
-}
-
-/* An entry of the joint pattern has d2L/dv_i dq_j (A, for a one-form d alpha_i/dq_j), d2L/dq_i dv_j
- * (B), h d2L/dq2 (K) and d2L/dv2/h (M) at the stages, and the corresponding values at the ends. */
-typedef struct entry {
-  double A[DVI__STAGES_MOST], B[DVI__STAGES_MOST], K[DVI__STAGES_MOST], M[DVI__STAGES_MOST];
-  double B0, H0, B1, H1, A_end;
-} entry;
-
-/* Copy the numbers of an entry at the stages, 0 where it is none. */
-static inline void gather_stages(const dvi__partitioned *p, const double *values, int at,
-                                 double *out)
-{
-  for (int k = 0; k < p->s; k++) out[k] = at >= 0 ? values[at * p->s + k] : 0;
-}
-
-static void partitioned_gather_entry(const dvi__partitioned *p, const dvi__joint_entry *where,
-                                     entry *out)
-{
-  *out = (entry){.B0 = 0};
-  gather_stages(p, p->H_qv, where->vq, out->A);
-  gather_stages(p, p->H_qv, where->qv, out->B);
-  gather_stages(p, p->H_qq, where->qq, out->K);
-  gather_stages(p, p->H_vv, where->vv, out->M);
-  for (int k = 0; k < p->s; k++) out->K[k] *= p->h;
-  if (!p->kick.has_multiplier) return;
-  out->B0 = partitioned_at(p->qv0, where->qv);
-  out->H0 = p->kick.at_mean ? 0.5 * partitioned_at(p->qq0, where->qq) : 0;
-  out->B1 = partitioned_at(p->qv1, where->qv);
-  out->H1 = (p->kick.at_mean ? 0.5 : 1.0) * partitioned_at(p->qq1, where->qq);
-  out->A_end = partitioned_at(p->qv_end, where->vq);
-}
-
-/* Fill the rows of a block in the column of the increment W_l. The stages are lanes. */
-INLINE void increment_column(const dvi__partitioned *p, const entry *e, int l, const int lanes,
-                             double *column)
-{
-  const double start = p->b[l] * e->H0, *a = p->a_by_columns[l];
-  double rows[DVI__STAGES_MOST], end = 0;
-  for (int k = 0; k < lanes; k++)
-    rows[k] = a[k] * e->A[k] - start - p->abar_by_columns[l][k] * e->B[l];
-  for (int j = 0; j < p->s; j++) {
-    const double impulse = e->K[j] * a[j], *abar = p->abar_by_columns[j];
-    for (int k = 0; k < lanes; k++) rows[k] -= impulse * abar[k];
-    end += impulse * p->b[j];
-  }
-  memcpy(column, rows, (size_t)p->s * sizeof *rows);
-  column[l] += e->M[l] / p->h;
-  if (p->kick.has_multiplier)
-    column[p->s] = start + p->b[l] * e->B[l] + end + p->b[l] * (e->H1 - e->A_end);
-}
-
-/* Fill the columns of all increments, which are `step` numbers apart. */
-WIDE static void increment_columns(const dvi__partitioned *p, const entry *e, size_t step,
-                                   double *columns)
-{
-  enum { HALF = DVI__STAGES_MOST / 2 };
-  for (int l = 0; l < p->s; l++, columns += step)
-    if (p->s <= HALF)
-      increment_column(p, e, l, HALF, columns);
-    else
-      increment_column(p, e, l, DVI__STAGES_MOST, columns);
-}
-
-/* Fill the rows of a block in the column of the multiplier. */
-static void multiplier_column(const dvi__partitioned *p, const entry *e, double *column)
-{
-  const double before = p->kick.before, both = before + p->kick.after,
-               start = before * e->B0 + both * e->H0;
-  for (int k = 0; k < p->s; k++)
-    column[k] = before * (e->A[k] - partitioned_dot(p->s, p->abar[k], e->K)) - start;
-  column[p->s] = start + before * partitioned_dot(p->s, p->b, e->K) + p->kick.after * e->B1 +
-                 both * (e->H1 - e->A_end);
-}
-
-dvi_status dvi__partitioned_jacobian(dvi__partitioned *p, const double *x, double *values)
-{
-  const size_t m = (size_t)p->m;
-  partitioned_points(p, x);
-  DVI_TRY(dvi__lagrangian_hessian(p->evaluator, p->s, p->t, p->Q, p->V, p->H_qq, p->H_qv, p->H_vv));
-  DVI_TRY(hessians_at_ends(p));
-  for (int j = 0; j < p->n; j++) {
-    const int first = p->joint.start[j], length = p->joint.start[j + 1] - first;
-    const size_t step = (size_t)length * m;
-    for (int e = 0; e < length; e++) {
-      entry block;
-      double *columns = values + m * m * (size_t)first + (size_t)e * m;
-      partitioned_gather_entry(p, &p->block[first + e], &block);
-      increment_columns(p, &block, step, columns);
-      if (p->kick.has_multiplier) multiplier_column(p, &block, columns + (size_t)p->s * step);
-    }
-  }
-  return DVI_OK;
 }
 
 /* Scale the rows by L_vv of the last Jacobian at the first stage. */

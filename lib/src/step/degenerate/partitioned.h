@@ -51,6 +51,13 @@ dvi_status dvi__partitioned_residual(dvi__partitioned *partitioned, const double
 dvi_status dvi__partitioned_jacobian(dvi__partitioned *partitioned, const double *x,
                                      double *values);
 
+/* The same in parts. dvi__partitioned_invert evaluates the second derivatives at x, and tells
+ * whether dvi__partitioned_correct can replace r by J^-1 r. If it cannot, dvi__partitioned_fill
+ * writes the Jacobian. */
+dvi_status dvi__partitioned_invert(dvi__partitioned *partitioned, const double *x, int *inverted);
+void dvi__partitioned_correct(dvi__partitioned *partitioned, double *r);
+void dvi__partitioned_fill(dvi__partitioned *partitioned, double *values);
+
 /* Write the size of the rows per unit of an unknown, from the gradients of alpha at q0, or
  * L_vv/h. */
 dvi_status dvi__partitioned_scale(dvi__partitioned *partitioned, double *scale);

@@ -50,6 +50,7 @@ static dvi_status action_allocate(dvi__action *a, dvi_counters *counters)
   DVI_TRY(dvi__action_prepare_transformed(a));
   if (a->system->mass_diagonal != NULL && dvi__action_has_fixed_point(a))
     DVI_TRY(dvi__action_prepare_preconditioner(a));
+  if (dvi__action_lags(a)) DVI_TRY(dvi__lagged_create(a->system, a->r, 1, &a->fixed_point.lagged));
   if (dvi__action_has_fixed_point(a)) DVI_TRY(dvi__action_prepare_continuation(a));
   return action_allocate_chord(a, counters);
 }
@@ -91,6 +92,7 @@ static void action_clear_iterations(dvi__action *a)
   dvi__release(a->fit_factor);
   dvi__action_clear_preconditioner(a);
   dvi__action_clear_transformed(a);
+  dvi__lagged_destroy(&a->fixed_point.lagged);
 }
 
 void dvi__action_destroy(dvi__action **action)

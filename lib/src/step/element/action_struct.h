@@ -6,6 +6,7 @@
 #include "step/element/row_terms.h"
 #include "step/joint.h"
 #include "space/basis.h"
+#include "system/evaluate/lagged.h"
 
 /* Number of tables that continue the results of the last step into the next, one for each ratio of
  * their lengths. A composition of 17 substeps has as many ratios in turn. */
@@ -70,6 +71,7 @@ struct dvi__action {
     /* With a vector potential, numbers of both kinds of stages [n*stages], and p0 - sum_j a_j [n].
      * Else the first two are L_q and Q. */
     double *force, *Q, *kinetic;
+    dvi__lagged *lagged; /* of slow potentials beside fast ones, or NULL */
   } fixed_point;
   double *Z;    /* [n*fixed_point.lanes] offsets of the nodes from q0, and h v */
   int iterated; /* the forces are those of a fixed-point iteration */
@@ -222,6 +224,9 @@ struct dvi__action_members;
 void dvi__preconditioner_begin_members(struct dvi__action_members *members);
 void dvi__preconditioner_iterate_members(struct dvi__action_members *members);
 void dvi__preconditioner_other_forces_of_members(struct dvi__action_members *members);
+
+/* Give the table by which forces move the nodes (lagged.h). */
+dvi__place_table dvi__action_place_table(const dvi__action *action);
 
 /* The iteration of a time-transformed element (transformed.c). Prepare it if the system is of its
  * kind, with as many nodes as functions. The others are those of fixed_point.h. */

@@ -31,8 +31,7 @@ struct dvi__chord_members {
 int dvi__action_has_chord_members(const dvi__action *a)
 {
   const dvi_system *system = a->system;
-  if (a->by_user || a->terms.count > 0 || a->centred != NULL || a->undamped != NULL ||
-      dvi__transformed_of(system) != NULL)
+  if (a->by_user || a->terms.count > 0 || a->centred != NULL || dvi__transformed_of(system) != NULL)
     return 0;
   return system->lagrangian == NULL
              ? (system->terms & DVI__CONSTANT_MASS) != 0

@@ -156,6 +156,20 @@ int dvi__action_has_fixed_point(const dvi__action *a)
          (a->system->terms & (DVI__FRICTION | DVI__DAMPING)) == 0 && a->terms.count == 0;
 }
 
+int dvi__action_lags(const dvi__action *a)
+{
+  return a->Z != NULL && a->system->vector == NULL && a->transformed == NULL &&
+         a->preconditioner == NULL && dvi__can_lag(a->system);
+}
+
+dvi__place_table dvi__action_place_table(const dvi__action *a)
+{
+  return (dvi__place_table){.lanes = a->fixed_point.lanes,
+                            .matrix = a->fixed_point.matrix,
+                            .weight = a->fixed_point.weight,
+                            .factor = a->fixed_point.factor};
+}
+
 static dvi_status make_tables(const dvi__action *a, long double *node, tables **t)
 {
   long double weight[DVI_QUADRATURE_MAX];
@@ -258,6 +272,7 @@ void dvi__action_fixed_point_begin(dvi__action *a, const double *Y)
   const size_t r = (size_t)a->r, stages = (size_t)a->fixed_point.stages;
   dvi__action_set_step(a);
   const dvi__fixed_point *iteration = place_iteration(a);
+  if (a->fixed_point.lagged != NULL) dvi__lagged_begin(a->fixed_point.lagged, 1, 1, NULL);
   dvi__lanes_split(iteration);
   /* a step that failed may have left NaN behind the stages of a row */
   memset(a->Z, 0, (size_t)a->n * (size_t)a->fixed_point.lanes * sizeof(double));
@@ -283,6 +298,8 @@ void dvi__action_fixed_point_continue(dvi__action *a, double ratio, const double
   dvi__action_set_step(a);
   const dvi__fixed_point *iteration = place_iteration(a);
   const double *shift = dvi__action_fixed_point_shift(a, ratio);
+  if (a->fixed_point.lagged != NULL)
+    dvi__lagged_begin(a->fixed_point.lagged, 1, ratio, g + (ptrdiff_t)a->n * a->r);
   if (a->preconditioner == NULL) {
     dvi__lanes_begin_from(iteration, shift, g);
     return;
@@ -313,9 +330,25 @@ __attribute__((noinline)) static dvi_status evaluate_stages(dvi__action *a)
   return DVI_OK;
 }
 
+/* Iterate with slow forces that may lag. */
+__attribute__((noinline)) static dvi_status iterate_lagged(dvi__action *a, double *change,
+                                                           double *largest)
+{
+  dvi__fixed_point *iteration = &a->fixed_point.iteration;
+  const dvi__place_table table = dvi__action_place_table(a);
+  DVI_TRY(dvi__lagged_gradient(a->fixed_point.lagged, a->evaluator, a->t, a->Q, &table, a->L_q));
+  a->iterated = 1;
+  dvi__lanes_iterate(iteration);
+  *change = iteration->change;
+  *largest = iteration->largest;
+  dvi__lagged_change(a->fixed_point.lagged, largest, change);
+  return DVI_OK;
+}
+
 dvi_status dvi__action_iterate(dvi__action *a, double *change, double *largest)
 {
   if (a->transformed != NULL) return dvi__transformed_iterate(a, change, largest);
+  if (a->fixed_point.lagged != NULL) return iterate_lagged(a, change, largest);
   dvi__fixed_point *iteration = &a->fixed_point.iteration;
   const dvi_status status = a->fixed_point.stages > a->r
                                 ? evaluate_stages(a)
@@ -353,6 +386,7 @@ WIDE static void subtract_offsets(size_t count, const double *restrict x, const 
 dvi_status dvi__action_iteration_residual(dvi__action *a, const double *Z, double *residual)
 {
   double change, largest;
+  if (a->fixed_point.lagged != NULL) dvi__lagged_renew(a->fixed_point.lagged);
   DVI_TRY(dvi__action_iterate(a, &change, &largest));
   subtract_offsets((size_t)a->n * (size_t)a->fixed_point.lanes, Z, a->Z, residual);
   return DVI_OK;
@@ -419,7 +453,8 @@ void dvi__action_fixed_point_ends(const dvi__action *a, double *dq, double *dq_l
 int dvi__action_forces_count(const dvi__action *a)
 {
   const int stages = a->transformed != NULL ? 2 * a->r : a->fixed_point.stages;
-  return dvi__action_has_fixed_point(a) ? a->n * stages : 0;
+  const int factors = a->fixed_point.lagged != NULL ? DVI__LAG_FACTORS : 0;
+  return dvi__action_has_fixed_point(a) ? a->n * stages + factors : 0;
 }
 
 /* Give the forces of a path that the rows have. */
@@ -435,15 +470,95 @@ static void forces_of_rows(const dvi__action *a, double *g)
     }
 }
 
+/* Give the forces of the last iteration. */
+static void iterated_forces(const dvi__action *a, double *g)
+{
+  const size_t numbers = (size_t)a->n * (size_t)a->fixed_point.stages;
+  memcpy(g, a->fixed_point.force, numbers * sizeof(double));
+  if (a->fixed_point.lagged != NULL) dvi__lagged_factors(a->fixed_point.lagged, 0, 1, g + numbers);
+}
+
 void dvi__action_forces(const dvi__action *a, double *g)
 {
-  const size_t numbers = (size_t)dvi__action_forces_count(a);
-  if (numbers == 0) return;
+  if (dvi__action_forces_count(a) == 0) return;
   if (a->transformed != NULL)
     dvi__transformed_flows(a, g);
   else if (a->iterated)
-    memcpy(g, a->fixed_point.force, numbers * sizeof(double));
+    iterated_forces(a, g);
   else
     forces_of_rows(a, g);
   if (a->preconditioner != NULL) dvi__preconditioner_other_forces(a, g);
+}
+
+/* ---- steps one after the other ---- */
+
+void dvi__action_begin_steps(dvi__action *a, double h, const double *q0, const double *p0,
+                             double *dq, double *dq_low, double *dp, dvi__element_steps *steps)
+{
+  *steps = (dvi__element_steps){.action = a};
+  dvi__lanes_solving *solving = &steps->solving;
+  dvi__action_place(a, a->t0, h, q0, p0);
+  dvi__action_set_step(a);
+  solving->iteration = place_iteration(a);
+  solving->t = a->t;
+  if (a->preconditioner == NULL && a->fixed_point.stages == a->r)
+    solving->evaluate = dvi__lone_gradient(a->evaluator, &solving->of);
+  steps->ends = (dvi__ends){.n = a->n,
+                            .stages = a->r,
+                            .g = a->L_q,
+                            .slant = a->fixed_point.slant,
+                            .factor = a->fixed_point.factor,
+                            .p0 = p0,
+                            .moved = dq,
+                            .low = dq_low,
+                            .sum = dp};
+  a->iterated = 1;
+}
+
+/* Iterate one by one, as dvi__lanes_solve does at once. */
+static int solve_one_by_one(dvi__element_steps *steps)
+{
+  const dvi__lanes_solving *solving = &steps->solving;
+  dvi__action *a = steps->action;
+  dvi__history history = {0};
+  double change;
+  int count;
+  const double *Z = dvi__action_offsets(a, &count);
+  for (int i = 1; i <= solving->most; i++) {
+    if (solving->before != NULL) memcpy(solving->before, Z, (size_t)count * sizeof *Z);
+    if (dvi__action_iterate(a, &change, &steps->largest) != DVI_OK) return -i;
+    const dvi__progress progress = dvi__settling_test(change, &history, solving->criteria,
+                                                      steps->largest, solving->size);
+    if (progress != DVI__GO_ON) return progress == DVI__CONVERGED ? i : -i;
+  }
+  return -solving->most;
+}
+
+static int solve_another_step(dvi__element_steps *steps, double ratio, double *g)
+{
+  dvi__action *a = steps->action;
+  dvi__action_fixed_point_continue(a, ratio, g);
+  const int iterations = solve_one_by_one(steps);
+  if (iterations <= 0) return iterations;
+  dvi__action_fixed_point_ends(a, steps->ends.moved, steps->ends.low, steps->ends.sum);
+  dvi__action_forces(a, g);
+  return iterations;
+}
+
+int dvi__action_solve_step(dvi__element_steps *steps, double t, double ratio, double *g)
+{
+  dvi__action *a = steps->action;
+  const double *shift = steps->shift;
+  a->t0 = t;
+  for (int j = 0; j < a->r; j++) a->t[j] = t + a->node[j] * a->h;
+  if (steps->solving.evaluate == NULL) return solve_another_step(steps, ratio, g);
+  if (ratio != 1 || shift == NULL) shift = dvi__action_fixed_point_shift(a, ratio);
+  if (ratio == 1) steps->shift = shift;
+  dvi__lanes_begin_from(steps->solving.iteration, shift, g);
+  const int iterations = dvi__lanes_solve(&steps->solving);
+  if (iterations <= 0) return iterations;
+  steps->largest = steps->solving.iteration->largest;
+  dvi__lanes_ends(&steps->ends);
+  memcpy(g, a->L_q, (size_t)a->n * (size_t)a->r * sizeof *g);
+  return iterations;
 }

@@ -24,6 +24,7 @@
  * h^2 V_qq/m. */
 #ifndef DVI_STEP_ELEMENT_FIXED_POINT_H
 #define DVI_STEP_ELEMENT_FIXED_POINT_H
+#include "num/simd/lanes_solve.h"
 #include "step/element/action.h"
 
 /* Prepare tables and memory if the system is of this kind. Does nothing for others. */
@@ -34,6 +35,9 @@ int dvi__action_has_fixed_point(const dvi__action *action);
 /* Tell whether the iteration takes quadratic potentials implicitly (preconditioner.c). */
 int dvi__action_has_preconditioner(const dvi__action *action);
 
+/* Tell whether slow potentials lag behind fast ones in the iteration (system/evaluate/lagged.h). */
+int dvi__action_lags(const dvi__action *action);
+
 /* Keep the inverses of `count` lengths of steps, instead of one. DVI_NO_MEMORY. */
 dvi_status dvi__action_keep_lengths(dvi__action *action, int count);
 
@@ -42,8 +46,9 @@ dvi_status dvi__action_keep_lengths(dvi__action *action, int count);
 void dvi__action_fixed_point_begin(dvi__action *action, const double *Y);
 
 /* Give the forces of the last iteration or residual, g [n*r], with a vector potential g and a
- * [n*2r]. Those of a preconditioner's potentials are left out. Their number is 0 for a system of
- * another kind, and nothing is done. */
+ * [n*2r]. Those of a preconditioner's potentials are left out. Where slow potentials lag, the
+ * iteration's factors follow, which a residual leaves as they are. The number of all is 0 for a
+ * system of another kind, and nothing is done. */
 int dvi__action_forces_count(const dvi__action *action);
 void dvi__action_forces(const dvi__action *action, double *g);
 
@@ -55,6 +60,26 @@ void dvi__action_fixed_point_continue(dvi__action *action, double ratio, const d
 /* Make one iteration. Gives the largest change of a node's offset from q0, and the largest
  * offset. */
 dvi_status dvi__action_iterate(dvi__action *action, double *change, double *largest);
+
+/* Steps of one length, one after the other. Each starts from the forces of the one before. */
+typedef struct dvi__element_steps {
+  dvi__action *action;
+  /* the iteration; without `evaluate` it is not one by the forces of one potential alone, and is
+   * made by dvi__action_iterate */
+  dvi__lanes_solving solving;
+  double largest; /* the largest offset of the last step */
+  dvi__ends ends;
+  const double *shift; /* the table by which the forces continue */
+} dvi__element_steps;
+
+/* Prepare steps of length h from q0 and p0, with dq, dq_low and dp as in dvi__action_ends. The
+ * caller sets the criteria. */
+void dvi__action_begin_steps(dvi__action *action, double h, const double *q0, const double *p0,
+                             double *dq, double *dq_low, double *dp, dvi__element_steps *steps);
+
+/* Solve one step from t, with the forces g of the last one, which was h / ratio long. g becomes
+ * the new forces. Returns the number of iterations, with the other sign if they fail. */
+int dvi__action_solve_step(dvi__element_steps *steps, double t, double ratio, double *g);
 
 /* Tell whether the iteration is on the nodes' offsets, as above. Its forces then give the path. */
 int dvi__action_has_offsets(const dvi__action *action);

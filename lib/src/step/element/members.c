@@ -73,6 +73,8 @@ dvi_status dvi__action_members_create(dvi__action *action, int capacity,
   if (!members_allocate(members, (size_t)capacity))
     return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d members", capacity);
   if (!dvi__action_has_offsets(action)) return dvi__chord_members_create(members, (size_t)capacity);
+  if (dvi__action_lags(action))
+    DVI_TRY(dvi__lagged_create(action->system, action->r, capacity, &members->lagged));
   if (members_allocate_stages(members, (size_t)capacity)) return DVI_OK;
   return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d members", capacity);
 }
@@ -105,6 +107,7 @@ void dvi__action_members_clear(dvi__action_members *m)
   for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) dvi__release(owned[i]);
   dvi__release(m->member);
   dvi__release(m->going);
+  dvi__lagged_destroy(&m->lagged);
   dvi__evaluator_destroy(&m->evaluator);
   *m = (dvi__action_members){0};
 }
@@ -143,6 +146,9 @@ static void members_put_nodes(dvi__action_members *m, double ratio)
   dvi__members_split(a->n, m->width, a->fixed_point.factor, m->p, m->all_start, m->all_low);
   dvi__members_product(a->n, a->fixed_point.stages, a->fixed_point.lanes, a->fixed_point.stages,
                        dvi__action_fixed_point_shift(a, ratio), m->width, m->forces, m->Z);
+  if (m->lagged != NULL)
+    dvi__lagged_begin(m->lagged, m->width, ratio,
+                      m->forces + members_row(m, (size_t)a->n * (size_t)a->r));
   const dvi__members_fixed_point iteration = members_fixed_point(m);
   if (a->preconditioner != NULL)
     dvi__preconditioner_begin_members(m);
@@ -165,6 +171,7 @@ void dvi__action_members_place(dvi__action_members *m, int count, double h, doub
   for (size_t j = 0; j < (size_t)a->r; j++)
     for (size_t k = 0; k < (size_t)count; k++) m->t[members_row(m, j) + k] = t[k] + a->node[j] * h;
   a->h = h;
+  dvi__action_damp(a, h);
   if (m->chord != NULL)
     dvi__chord_members_place(m, h / last_h);
   else
@@ -206,6 +213,7 @@ void dvi__action_members_close_up(dvi__action_members *m, const char *marked)
   m->start = m->packed_start;
   m->low = m->packed_low;
   m->origin = m->packed_origin;
+  if (m->lagged != NULL) dvi__lagged_close_up(m->lagged, lanes, m->going);
 }
 
 /* Evaluate forces and A as evaluate_stages of fixed_point.c. */
@@ -229,9 +237,21 @@ static dvi_status members_evaluate_stages(dvi__action_members *m)
   return DVI_OK;
 }
 
+/* Iterate with slow forces that may lag. */
+static dvi_status members_iterate_lagged(dvi__action_members *m)
+{
+  const dvi__place_table table = dvi__action_place_table(m->action);
+  DVI_TRY(dvi__lagged_gradient(m->lagged, m->evaluator, m->t, m->Q, &table, m->force));
+  const dvi__members_fixed_point iteration = members_fixed_point(m);
+  dvi__members_iterate(&iteration);
+  dvi__lagged_change(m->lagged, m->largest, m->change);
+  return DVI_OK;
+}
+
 dvi_status dvi__action_members_iterate(dvi__action_members *m)
 {
   if (m->chord != NULL) return dvi__chord_members_iterate(m);
+  if (m->lagged != NULL) return members_iterate_lagged(m);
   DVI_TRY(m->kinetic != NULL ? members_evaluate_stages(m)
                              : dvi__potentials_gradient_untested(
                                    m->evaluator, m->action->r * m->width, m->t, m->Q, m->force));
@@ -263,6 +283,9 @@ void dvi__action_members_keep(dvi__action_members *m, int lanes, const int *lane
   for (int k = 0; k < lanes && m->chord != NULL; k++) dvi__chord_members_keep(m, lane[k]);
   if (m->chord != NULL) return;
   keep_rows(m, rows, lanes, lane, m->force, m->forces);
+  for (int k = 0; k < lanes && m->lagged != NULL; k++)
+    dvi__lagged_factors(m->lagged, lane[k], (size_t)m->count,
+                        m->forces + rows * (size_t)m->count + m->member[lane[k]]);
   if (m->kept_Q != NULL) keep_rows(m, rows, lanes, lane, m->Q, m->kept_Q);
 }
 

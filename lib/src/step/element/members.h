@@ -27,8 +27,8 @@ typedef struct dvi__action_members {
   /* Numbers of all members. */
   double *all_start, *all_low; /* [n*count] */
   const double *t0, *p;        /* [count], [n*count] times and momenta at the step's start */
-  /* [n*stages*count] forces of the last step, then those of each member's last iteration. With
-   * `chord` paths [n*s*count] */
+  /* [n*stages*count] forces of the last step, then those of each member's last iteration, and
+   * `lagged` factors behind them. With `chord` paths [n*s*count] */
   double *forces;
   double *dq, *dq_low, *dp; /* [n*count] */
   /* With a vector potential, batches of places, velocities, V_q and A [n*r*width], and p0 - sum_j
@@ -37,6 +37,7 @@ typedef struct dvi__action_members {
   /* With a preconditioner Phi(Z) - Z and its product with the inverse [n*r*width], and the places
    * of each member's last iteration [n*r*count], else NULL. */
   double *rest, *moved, *kept_Q;
+  struct dvi__lagged *lagged;       /* of slow potentials beside fast ones, else NULL */
   struct dvi__chord_members *chord; /* of an iteration on paths, else NULL */
 } dvi__action_members;
 

@@ -3,37 +3,13 @@
 #include <math.h>
 #include <string.h>
 
+#include "step/hamiltonian/canonical_struct.h"
 #include "step/onestep/collocation.h"
-#include "step/joint.h"
 #include "core/memory.h"
 #include "core/status.h"
 #include "space/trial.h"
 
 enum { DEGREE = DVI__CANONICAL_DEGREE, POINTS = DVI__CANONICAL_POINTS };
-
-struct dvi__canonical {
-  const dvi_system *system;
-  dvi__evaluator *evaluator;
-  int n, s, r, m; /* coordinates, degree, points, unknowns of a coordinate */
-  dvi__space space;
-  /* psi_k, psi_k - psi_k(1) and psi_k' at the points */
-  double psi[POINTS][DEGREE], bar[POINTS][DEGREE], slope[POINTS][DEGREE];
-  /* psi_k(1); the coefficients of q(tau) = tau */
-  double end[DEGREE], line[DEGREE];
-  /* coefficients from values at the points tau_k = k/s */
-  double tau[DEGREE], fit[DEGREE * DEGREE];
-  double ratio, shift[DEGREE][DEGREE],
-      /* maps a step's unknowns to those of the next, `ratio` times as long */
-      shift_p[POINTS][POINTS];
-  double c[POINTS], b[POINTS];
-  dvi__pattern joint, pattern; /* joint is the pattern of one block, pattern that of the Jacobian */
-  dvi__joint_entry *block;     /* [entries of joint] */
-  /* The current step. */
-  double t0, h;
-  const double *q0, *p0, *unit;
-  /* Values at the points, component by component [n*r]. */
-  double *t, *Q, *P, *H_q, *H_p, *H_qq, *H_qp, *H_pp;
-};
 
 static double canonical_dot(int count, const double *x, const double *y)
 {
@@ -44,13 +20,22 @@ static double canonical_dot(int count, const double *x, const double *y)
 
 /* ---- create ---- */
 
+/* The coefficients of a nodal basis are values themselves. */
+static void fill_fit(dvi__canonical *c)
+{
+  const int is_nodal = dvi__basis_is_nodal(c->space.basis);
+  for (int k = 0; k < c->s; k++)
+    c->tau[k] = is_nodal ? (double)(c->space.mark[k + 1] / c->space.scale) : (k + 1.0) / c->s;
+  if (!is_nodal) dvi__trial_fit(c->space.basis, c->s, c->s, c->tau, c->fit);
+  for (int k = 0; is_nodal && k < c->s; k++) c->fit[k * c->s + k] = 1;
+}
+
 static void canonical_fill_tables(dvi__canonical *c)
 {
   for (int j = 0; j < c->r; j++)
     dvi__trial_in(&c->space, c->c[j], c->psi[j], c->bar[j], c->slope[j]);
   dvi__trial_in(&c->space, 1, c->end, NULL, NULL);
-  for (int k = 0; k < c->s; k++) c->tau[k] = (k + 1.0) / c->s;
-  dvi__trial_fit(c->space.basis, c->s, c->s, c->tau, c->fit);
+  fill_fit(c);
   for (int k = 0; k < c->s; k++) c->line[k] = canonical_dot(c->s, c->fit + k * c->s, c->tau);
 }
 
@@ -62,13 +47,13 @@ static double **canonical_owned_array(dvi__canonical *c, int i)
 
 static dvi_status canonical_allocate(dvi__canonical *c)
 {
-  const size_t r = (size_t)c->r, n = (size_t)c->n,
+  const size_t r = (size_t)c->r, z = (size_t)dvi__canonical_room(c),
                qq = (size_t)dvi__pattern_entries(&c->system->qq),
                qp = (size_t)dvi__pattern_entries(&c->system->qv),
                pp = (size_t)dvi__pattern_entries(&c->system->vv);
-  const size_t size[] = {1, n, n, n, n, qq, qp, pp};
+  const size_t size[] = {r, z, z, z, z, qq * r, qp * r, pp * r};
   for (int i = 0; canonical_owned_array(c, i) != NULL; i++) {
-    *canonical_owned_array(c, i) = DVI_NEW(double, size[i] * r + 1);
+    *canonical_owned_array(c, i) = DVI_NEW(double, size[i] + 1);
     if (*canonical_owned_array(c, i) == NULL)
       return dvi__fail(DVI_NO_MEMORY, "no memory for %d points in %d dimensions", c->r, c->n);
   }
@@ -85,7 +70,8 @@ static dvi_status canonical_initialise(dvi__canonical *c, const dvi__action_spac
   DVI_TRY(dvi__evaluator_create(c->system, c->r, DVI__HESSIANS, counters, &c->evaluator));
   DVI_TRY(dvi__joint_create(c->system, NULL, &c->joint, &c->block));
   DVI_TRY(dvi__pattern_blocks(&c->joint, c->m, &c->pattern));
-  return canonical_allocate(c);
+  DVI_TRY(canonical_allocate(c));
+  return dvi__canonical_iteration_create(c);
 }
 
 dvi_status dvi__canonical_create(const dvi_system *system, const dvi__action_space *space,
@@ -99,6 +85,7 @@ dvi_status dvi__canonical_create(const dvi_system *system, const dvi__action_spa
   c->s = space->degree;
   c->r = space->nodes;
   c->m = c->s + c->r;
+  c->rule = space->rule;
   const dvi_status status = canonical_initialise(c, space, counters);
   if (status != DVI_OK) dvi__canonical_destroy(&c);
   *canonical = c;
@@ -111,6 +98,7 @@ void dvi__canonical_destroy(dvi__canonical **canonical)
   if (c == NULL) return;
   for (int i = 0; canonical_owned_array(c, i) != NULL; i++)
     dvi__release(*canonical_owned_array(c, i));
+  dvi__canonical_iteration_clear(&c->iteration);
   dvi__evaluator_destroy(&c->evaluator);
   dvi__pattern_clear(&c->joint);
   dvi__pattern_clear(&c->pattern);
@@ -148,7 +136,7 @@ static int velocity_row(const dvi__canonical *c, int j)
   return j < c->s ? j : c->s + j;
 }
 
-static void canonical_points(dvi__canonical *c, const double *x)
+void dvi__canonical_points(dvi__canonical *c, const double *x)
 {
   for (int i = 0; i < c->n; i++, x += c->m)
     for (int j = 0; j < c->r; j++) {
@@ -159,7 +147,7 @@ static void canonical_points(dvi__canonical *c, const double *x)
 
 dvi_status dvi__canonical_residual(dvi__canonical *c, const double *x, double *R)
 {
-  canonical_points(c, x);
+  dvi__canonical_points(c, x);
   DVI_TRY(dvi__lagrangian_gradient(c->evaluator, c->r, c->t, c->Q, c->P, c->H_q, c->H_p));
   for (int i = 0; i < c->n; i++, x += c->m, R += c->m) {
     const double *H_q = c->H_q + i * c->r, *H_p = c->H_p + i * c->r, *Pi = x + c->s;
@@ -182,10 +170,13 @@ dvi_status dvi__canonical_scale(dvi__canonical *c, double *scale)
   return DVI_OK;
 }
 
+/* With as many points as degrees both increments have the same weights, to the last bit. Others
+ * would make the energy drift. */
 void dvi__canonical_ends(const dvi__canonical *c, const double *x, double *dq, double *dp)
 {
   for (int i = 0; i < c->n; i++) {
-    dq[i] = canonical_dot(c->s, c->end, x + i * c->m);
+    dq[i] = c->r == c->s ? c->h * canonical_dot(c->r, c->b, c->H_p + i * c->r)
+                         : canonical_dot(c->s, c->end, x + i * c->m);
     dp[i] = -c->h * canonical_dot(c->r, c->b, c->H_q + i * c->r);
   }
 }
@@ -240,7 +231,7 @@ static void momentum_column(const dvi__canonical *c, const entry *e, int same, d
 dvi_status dvi__canonical_jacobian(dvi__canonical *c, const double *x, double *values)
 {
   const int m = c->m;
-  canonical_points(c, x);
+  dvi__canonical_points(c, x);
   DVI_TRY(dvi__lagrangian_hessian(c->evaluator, c->r, c->t, c->Q, c->P, c->H_qq, c->H_qp, c->H_pp));
   for (int j = 0; j < c->n; j++) {
     const int first = c->joint.start[j], height = (c->joint.start[j + 1] - first) * m;

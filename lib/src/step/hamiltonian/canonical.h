@@ -49,7 +49,15 @@ dvi_status dvi__canonical_residual(dvi__canonical *canonical, const double *x, d
 dvi_status dvi__canonical_jacobian(dvi__canonical *canonical, const double *x, double *values);
 dvi_status dvi__canonical_scale(dvi__canonical *canonical, double *scale);
 
-/* Write the increments of q and p, [n] each, of the last residual. */
+/* Fixed point iteration, for steps with as many points as degrees. Begin at the unknowns x,
+ * iterate, and write the unknowns of the last iteration. Each gives the largest change of an
+ * increment at the points, and the largest increment, those of p in their units. */
+int dvi__canonical_has_iteration(const dvi__canonical *canonical);
+void dvi__canonical_begin(dvi__canonical *canonical, const double *x);
+dvi_status dvi__canonical_iterate(dvi__canonical *canonical, double *change, double *whole);
+void dvi__canonical_finish(const dvi__canonical *canonical, double *x);
+
+/* Write the increments of q and p, [n] each, of the last residual or iteration. */
 void dvi__canonical_ends(const dvi__canonical *canonical, const double *x, double *dq, double *dp);
 
 /* Write x with the increments of p in their own units, for dvi__canonical_continue. */

@@ -73,7 +73,8 @@ static dvi_status phase_initialise(dvi__phase_element *f, dvi_counters *counters
   DVI_TRY(phase_fill_tables(f));
   DVI_TRY(dvi__evaluator_create(f->system, f->d, DVI__HESSIANS, counters, &f->evaluator));
   DVI_TRY(dvi__phase_element_lay_out(f));
-  return phase_allocate(f);
+  DVI_TRY(phase_allocate(f));
+  return dvi__phase_iteration_create(f);
 }
 
 dvi_status dvi__phase_element_create(const dvi_system *system, int degree, int moments,
@@ -99,6 +100,7 @@ void dvi__phase_element_destroy(dvi__phase_element **phase)
   if (f == NULL) return;
   for (int i = 0; phase_owned_array(f, i) != NULL; i++) dvi__release(*phase_owned_array(f, i));
   dvi__phase_element_clear_layout(f);
+  dvi__phase_iteration_clear(&f->iteration);
   dvi__evaluator_destroy(&f->evaluator);
   dvi__release(f);
   *phase = NULL;
@@ -115,22 +117,6 @@ dvi__evaluator *dvi__phase_element_evaluator(const dvi__phase_element *f)
 }
 
 /* ---- points ---- */
-
-static const double *phase_row_of(const dvi__phase_element *f, const double *x, int component)
-{
-  return x + component * (f->d + 1);
-}
-
-/* Return h lambda' of a constraint, followed by the coefficients of h Lambda. */
-static const double *phase_multipliers(const dvi__phase_element *f, const double *x, int constraint)
-{
-  return x + 2 * f->n * (f->d + 1) + constraint * (f->k + 1);
-}
-
-static double *gradients_at(const dvi__phase_element *f, int stage)
-{
-  return f->phi_z + (size_t)stage * (size_t)dvi__pattern_entries(&f->system->constraint->gradients);
-}
 
 dvi_status dvi__phase_element_place(dvi__phase_element *f, double t0, double h, const double *q,
                                     const double *p, const double *multiplier)
@@ -152,11 +138,11 @@ static double phase_start_of(const dvi__phase_element *f, int component)
   return component < f->n ? f->q0[component] : f->p0[component - f->n];
 }
 
-static void phase_points(dvi__phase_element *f, const double *x)
+void dvi__phase_points(dvi__phase_element *f, const double *x)
 {
   const int d = f->d;
   for (int c = 0; c < 2 * f->n; c++) {
-    const double *W = phase_row_of(f, x, c), from = phase_start_of(f, c);
+    const double *W = dvi__phase_row(f, x, c), from = phase_start_of(f, c);
     for (int i = 0; i < d; i++) {
       double sum = f->kick[c];
       for (int j = 0; j < d; j++) sum += f->a[i][j] * W[j];
@@ -166,38 +152,47 @@ static void phase_points(dvi__phase_element *f, const double *x)
   }
 }
 
-/* Write one stage to f->point, and h Lambda there to f->weight. */
-static void take_stage(const dvi__phase_element *f, const double *x, int i)
+void dvi__phase_take(const dvi__phase_element *f, const double *multipliers, int i)
 {
-  for (int c = 0; c < 2 * f->n; c++) f->point[c] = f->Z[c * f->d + i];
-  for (int a = 0; a < f->m; a++) {
-    f->weight[a] = 0;
-    for (int l = 0; l < f->k; l++)
-      f->weight[a] += f->legendre[i][l] * phase_multipliers(f, x, a)[1 + l];
+  const int d = f->d, z = 2 * f->n;
+  if (i == d) memcpy(f->point, f->end, (size_t)z * sizeof *f->point);
+  for (int c = 0; i < d && c < z; c++) f->point[c] = f->Z[c * d + i];
+  for (int a = 0; a < f->m; a++, multipliers += f->k + 1) {
+    f->weight[a] = i == d ? multipliers[0] : 0;
+    for (int l = 0; i < d && l < f->k; l++) f->weight[a] += f->legendre[i][l] * multipliers[1 + l];
   }
 }
 
-static void take_end(const dvi__phase_element *f, const double *x)
+/* Evaluate the gradients of the constraint at f->point, keep them for `stage`, and add X_phi times
+ * the weights to the numbers of `field`, which are `stride` apart. */
+static dvi_status phase_push_constraints(dvi__phase_element *f, int stage, int stride,
+                                         double *field)
 {
-  memcpy(f->point, f->end, 2 * (size_t)f->n * sizeof *f->point);
-  for (int a = 0; a < f->m; a++) f->weight[a] = phase_multipliers(f, x, a)[0];
+  const dvi__pattern *gradients = &f->system->constraint->gradients;
+  const int n = f->n;
+  double *phi_z = dvi__phase_gradients(f, stage);
+  DVI_TRY(dvi__constraint_gradients(f->evaluator, f->point, f->point + n, phi_z));
+  for (int a = 0, e = 0; a < f->m; a++)
+    for (; e < gradients->start[a + 1]; e++) {
+      const int row = gradients->row[e];
+      field[(row < n ? n + row : row - n) * stride] += (row < n ? -f->weight[a] : f->weight[a]) *
+                                                       phi_z[e];
+    }
+  return DVI_OK;
 }
 
-/* Evaluate the constraint at f->point. Keep its gradients for `stage`, and write X_phi times the
- * weights to f->field. */
-static dvi_status phase_push_constraints(dvi__phase_element *f, int stage)
+/* Set f->field to X_phi times the weights at the end. */
+static dvi_status phase_push_end(dvi__phase_element *f, const double *multipliers)
 {
-  double *phi_z = gradients_at(f, stage);
   memset(f->field, 0, 2 * (size_t)f->n * sizeof *f->field);
-  DVI_TRY(dvi__constraint_gradients(f->evaluator, f->point, f->point + f->n, phi_z));
-  dvi__constraint_push(f->system->constraint, phi_z, f->weight, 1, f->field);
-  return DVI_OK;
+  dvi__phase_take(f, multipliers, f->d);
+  return phase_push_constraints(f, f->d, 1, f->field);
 }
 
 /* ---- residual ---- */
 
 /* Set F = h X_H + h X_phi Lambda at the stages. Without moments no constraint acts there. */
-static dvi_status phase_vector_fields(dvi__phase_element *f, const double *x)
+static dvi_status phase_stage_fields(dvi__phase_element *f, const double *multipliers)
 {
   const int half = f->n * f->d;
   DVI_TRY(dvi__lagrangian_gradient(f->evaluator, f->d, f->t, f->Z, f->Z + half, f->F + half, f->F));
@@ -206,12 +201,18 @@ static dvi_status phase_vector_fields(dvi__phase_element *f, const double *x)
     f->F[half + c] *= -f->h;
   }
   for (int i = 0; i < f->d && f->k > 0; i++) {
-    take_stage(f, x, i);
-    DVI_TRY(phase_push_constraints(f, i));
+    dvi__phase_take(f, multipliers, i);
+    DVI_TRY(phase_push_constraints(f, i, f->d, f->F + i));
     DVI_TRY(dvi__constraint_value(f->evaluator, f->point, f->point + f->n, f->phi + i * f->m));
-    for (int c = 0; c < 2 * f->n; c++) f->F[c * f->d + i] += f->field[c];
   }
   return DVI_OK;
+}
+
+dvi_status dvi__phase_fields(dvi__phase_element *f, const double *multipliers)
+{
+  DVI_TRY(phase_stage_fields(f, multipliers));
+  DVI_TRY(phase_push_end(f, multipliers));
+  return dvi__constraint_value(f->evaluator, f->point, f->point + f->n, f->weight);
 }
 
 static double phase_moment(const dvi__phase_element *f, int constraint, int l)
@@ -224,13 +225,10 @@ static double phase_moment(const dvi__phase_element *f, int constraint, int l)
 dvi_status dvi__phase_element_residual(dvi__phase_element *f, const double *x, double *R)
 {
   const int d = f->d;
-  phase_points(f, x);
-  DVI_TRY(phase_vector_fields(f, x));
-  take_end(f, x);
-  DVI_TRY(phase_push_constraints(f, d));
-  DVI_TRY(dvi__constraint_value(f->evaluator, f->point, f->point + f->n, f->weight));
+  dvi__phase_points(f, x);
+  DVI_TRY(dvi__phase_fields(f, dvi__phase_multipliers(f, x, 0)));
   for (int c = 0; c < 2 * f->n; c++, R += d + 1) {
-    const double *W = phase_row_of(f, x, c);
+    const double *W = dvi__phase_row(f, x, c);
     R[d] = W[d] - f->kick[c] - 0.5 * f->field[c];
     for (int i = 0; i < d; i++) {
       R[i] = W[i] - f->F[c * d + i];
@@ -244,109 +242,7 @@ dvi_status dvi__phase_element_residual(dvi__phase_element *f, const double *x, d
   return DVI_OK;
 }
 
-/* ---- Jacobian ---- */
-
-/* Add factor times the derivative of the vector field (F_p, -F_q) to slope. Entry e of F_qq is
- * qq[e * stride]. */
-static void add_slope(const dvi__vector_field_places *at, const dvi__lagrangian_term *of,
-                      const double *qq, const double *qp, const double *pp, int stride,
-                      double factor, double *slope)
-{
-  for (int e = 0; e < dvi__pattern_entries(&of->qq); e++)
-    slope[at->qq[e]] -= factor * qq[e * stride];
-  for (int e = 0; e < dvi__pattern_entries(&of->vv); e++)
-    slope[at->pp[e]] += factor * pp[e * stride];
-  for (int e = 0; e < dvi__pattern_entries(&of->qv); e++) {
-    slope[at->qp_in_p[e]] -= factor * qp[e * stride];
-    slope[at->qp_in_q[e]] += factor * qp[e * stride];
-  }
-}
-
-/* Add the derivative of the constraints with the weights at f->point. */
-static dvi_status phase_add_constraints(dvi__phase_element *f, double *slope)
-{
-  DVI_TRY(dvi__constraint_hessian(f->evaluator, f->point, f->point + f->n, f->weight, f->phi_qq,
-                                  f->phi_qp, f->phi_pp));
-  add_slope(&f->of_phi, &f->system->constraint->weighted, f->phi_qq, f->phi_qp, f->phi_pp, 1, 1,
-            slope);
-  return DVI_OK;
-}
-
-static dvi_status phase_slopes(dvi__phase_element *f, const double *x)
-{
-  const size_t entries = (size_t)dvi__pattern_entries(&f->joint);
-  const int half = f->n * f->d;
-  memset(f->slope, 0, entries * ((size_t)f->d + 1) * sizeof *f->slope);
-  DVI_TRY(dvi__lagrangian_hessian(f->evaluator, f->d, f->t, f->Z, f->Z + half, f->H_qq, f->H_qp,
-                                  f->H_pp));
-  for (int i = 0; i < f->d; i++) {
-    double *slope = f->slope + (size_t)i * entries;
-    add_slope(&f->of_H, f->system->lagrangian, f->H_qq + i, f->H_qp + i, f->H_pp + i, f->d, f->h,
-              slope);
-    if (f->k == 0) continue;
-    take_stage(f, x, i);
-    DVI_TRY(phase_push_constraints(f, i));
-    DVI_TRY(phase_add_constraints(f, slope));
-  }
-  take_end(f, x);
-  DVI_TRY(phase_push_constraints(f, f->d));
-  return phase_add_constraints(f, f->slope + (size_t)f->d * entries);
-}
-
-/* Fill the rows of a block of two components in column l, which belongs to W_l or to {z'} - {z}. */
-static void component_column(const dvi__phase_element *f, int e, int same, int l, double *column)
-{
-  const size_t entries = (size_t)dvi__pattern_entries(&f->joint);
-  const int d = f->d;
-  for (int i = 0; i < d; i++)
-    column[i] = l == d ? 0
-                       : (same && i == l) - f->a[i][l] * f->slope[(size_t)i * entries + (size_t)e];
-  if (l == d)
-    column[d] = same - 0.5 * f->slope[(size_t)d * entries + (size_t)e];
-  else
-    column[d] = same ? -f->b[l] : 0;
-}
-
-/* Fill the rows of a constraint in the same column. */
-static void constraint_rows(const dvi__phase_element *f, int gradient, int l, double *column)
-{
-  column[0] = l == f->d ? gradients_at(f, f->d)[gradient] : 0;
-  for (int k = 0; k < f->k; k++) {
-    column[1 + k] = 0;
-    for (int i = 0; i < f->d && l < f->d; i++)
-      column[1 + k] += f->b[i] * f->legendre[i][k] * gradients_at(f, i)[gradient] * f->a[i][l];
-  }
-}
-
-/* Fill the rows of a component in column l of a constraint, which belongs to h lambda' or to a
- * coefficient of h Lambda. The entries are phi_p for q and -phi_q for p. */
-static void constraint_column(const dvi__phase_element *f, int gradient, double sign, int l,
-                              double *column)
-{
-  for (int i = 0; i < f->d; i++)
-    column[i] = l == 0 ? 0 : -sign * f->legendre[i][l - 1] * gradients_at(f, i)[gradient];
-  column[f->d] = l == 0 ? -0.5 * sign * gradients_at(f, f->d)[gradient] : 0;
-}
-
-dvi_status dvi__phase_element_jacobian(dvi__phase_element *f, const double *x, double *values)
-{
-  const int z = 2 * f->n;
-  phase_points(f, x);
-  DVI_TRY(phase_slopes(f, x));
-  for (int j = 0; j < f->joint.columns; j++)
-    for (int l = 0; l <= (j < z ? f->d : f->k); l++)
-      for (int e = f->joint.start[j]; e < f->joint.start[j + 1]; e++) {
-        const int i = f->joint.row[e];
-        if (j >= z)
-          constraint_column(f, f->gradient[e], i < f->n ? 1 : -1, l, values);
-        else if (i < z)
-          component_column(f, e, i == j, l, values);
-        else
-          constraint_rows(f, f->gradient[e], l, values);
-        values += 1 + (i < z ? f->d : f->k);
-      }
-  return DVI_OK;
-}
+/* ---- scale ---- */
 
 /* Write the scale of the rows. Rows of z have the size of the unknowns, and rows of a constraint
  * that of its gradient. */
@@ -370,22 +266,23 @@ void dvi__phase_element_end(const dvi__phase_element *f, const double *x, double
                             double *multiplier)
 {
   for (int i = 0; i < f->n; i++) {
-    dq[i] = phase_row_of(f, x, i)[f->d];
-    dp[i] = phase_row_of(f, x, f->n + i)[f->d];
+    dq[i] = dvi__phase_row(f, x, i)[f->d];
+    dp[i] = dvi__phase_row(f, x, f->n + i)[f->d];
   }
-  for (int a = 0; a < f->m; a++) multiplier[a] = phase_multipliers(f, x, a)[0] / f->h;
+  for (int a = 0; a < f->m; a++) multiplier[a] = dvi__phase_multipliers(f, x, a)[0] / f->h;
 }
 
 dvi_status dvi__phase_element_jump(dvi__phase_element *f, const double *x, double *jump,
                                    double *change)
 {
   const size_t bytes = 2 * (size_t)f->n * sizeof *jump;
-  phase_points(f, x);
-  take_end(f, x);
-  DVI_TRY(phase_push_constraints(f, f->d));
+  for (int c = 0; c < 2 * f->n; c++)
+    f->end[c] = phase_start_of(f, c) + dvi__phase_row(f, x, c)[f->d];
+  DVI_TRY(phase_push_end(f, dvi__phase_multipliers(f, x, 0)));
   memcpy(jump, f->field, bytes);
   memcpy(change, f->field, bytes);
-  dvi__constraint_push(f->system->constraint, gradients_at(f, f->d), f->impulse, -1, change);
+  dvi__constraint_push(f->system->constraint, dvi__phase_gradients(f, f->d), f->impulse, -1,
+                       change);
   return DVI_OK;
 }
 
@@ -394,11 +291,12 @@ dvi_status dvi__phase_element_jump(dvi__phase_element *f, const double *x, doubl
 static void add_kicks(const dvi__phase_element *f, const double *x, double size[2])
 {
   const dvi__pattern *gradients = &f->system->constraint->gradients;
-  const double *phi_z = gradients_at(f, f->d);
+  const double *phi_z = dvi__phase_gradients(f, f->d);
   for (int a = 0; a < f->m; a++)
     for (int e = gradients->start[a]; e < gradients->start[a + 1]; e++) {
       double *of = &size[gradients->row[e] < f->n];
-      *of = fmax(*of, fabs(phi_z[e]) * dvi__largest((size_t)f->k + 1, phase_multipliers(f, x, a)));
+      *of = fmax(*of,
+                 fabs(phi_z[e]) * dvi__largest((size_t)f->k + 1, dvi__phase_multipliers(f, x, a)));
     }
 }
 
@@ -433,19 +331,25 @@ void dvi__phase_element_straight(const dvi__phase_element *f, const double *v, d
   }
 }
 
-void dvi__phase_element_continue(const dvi__phase_element *f, double ratio, const double *last,
-                                 double *x)
+/* Fill the weights that continue a polynomial through the stages. */
+static void fill_continuation(dvi__phase_element *f, double ratio)
+{
+  f->ratio = ratio;
+  for (int i = 0; i < f->d; i++)
+    dvi__lagrange_weights(f->d, f->c, 1 + ratio * f->c[i], f->continuation[i]);
+}
+
+void dvi__phase_element_continue(dvi__phase_element *f, double ratio, const double *last, double *x)
 {
   const int d = f->d;
-  for (int i = 0; i < d; i++) {
-    double weight[MOST];
-    dvi__lagrange_weights(d, f->c, 1 + ratio * f->c[i], weight);
-    for (int c = 0; c < 2 * f->n; c++) {
+  if (!(ratio == f->ratio)) fill_continuation(f, ratio);
+  for (int c = 0; c < 2 * f->n; c++, last += d + 1, x += d + 1) {
+    for (int i = 0; i < d; i++) {
       double sum = 0;
-      for (int j = 0; j < d; j++) sum += weight[j] * phase_row_of(f, last, c)[j];
-      x[c * (d + 1) + i] = ratio * sum;
+      for (int j = 0; j < d; j++) sum += f->continuation[i][j] * last[j];
+      x[i] = ratio * sum;
     }
+    x[d] = ratio * last[d];
   }
-  for (int c = 0; c < 2 * f->n; c++) x[c * (d + 1) + d] = ratio * phase_row_of(f, last, c)[d];
-  for (int i = 2 * f->n * (d + 1); i < f->pattern.columns; i++) x[i] = ratio * last[i];
+  for (int i = 0; i < f->m * (f->k + 1); i++) x[i] = ratio * last[i];
 }

@@ -45,6 +45,14 @@ dvi_status dvi__phase_element_residual(dvi__phase_element *phase, const double *
 dvi_status dvi__phase_element_jacobian(dvi__phase_element *phase, const double *x, double *values);
 dvi_status dvi__phase_element_scale(dvi__phase_element *phase, double *scale);
 
+/* Simplified Newton's method in variables of its own (phase_iteration.c), for small systems. Begin
+ * at x, iterate, and write x at the end. An iteration gives the largest correction and the largest
+ * of the unknowns of z. */
+int dvi__phase_element_has_iteration(const dvi__phase_element *phase);
+void dvi__phase_element_begin(dvi__phase_element *phase, const double *x);
+dvi_status dvi__phase_element_iterate(dvi__phase_element *phase, double *change, double *whole);
+void dvi__phase_element_finish(const dvi__phase_element *phase, double *x);
+
 /* Write the end of a solution. dvi__phase_element_end gives the increments dq and dp [n] and the
  * multiplier [m]. dvi__phase_element_jump gives the jump [2n] of q and of p, and its change by the
  * multiplier in the step, h X_phi (lambda' - lambda) [2n]. */
@@ -61,7 +69,7 @@ void dvi__phase_element_sizes(const dvi__phase_element *phase, const double *x, 
 /* Write x for a start with q' = v [n]. dvi__phase_element_continue continues the x of the last
  * step, with ratio = h_next / h_last. */
 void dvi__phase_element_straight(const dvi__phase_element *phase, const double *v, double *x);
-void dvi__phase_element_continue(const dvi__phase_element *phase, double ratio, const double *last,
+void dvi__phase_element_continue(dvi__phase_element *phase, double ratio, const double *last,
                                  double *x);
 
 #endif

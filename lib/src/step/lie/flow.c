@@ -218,17 +218,15 @@ void dvi__flow_plain(const dvi__flow *f, const double *q, const double *p, const
 
 /* ---- points ---- */
 
-/* Rotate a direction or an angle from the left. */
-static void flow_turn_slot(dvi__chart_kind kind, const double *theta, double *y,
-                           double *compensation)
+/* Find the rotation of a slot's rows. Directions and angles rotate from the left. */
+static dvi__turn flow_turn(dvi__chart_kind kind, const double *theta)
 {
   double w[3] = {0};
   for (int i = 0; i < 3 && kind != DVI__CIRCLE; i++)
     w[i] = kind == DVI__SPHERE ? -theta[i] : theta[i];
   if (kind == DVI__CIRCLE) w[2] = -*theta;
   dvi__turn_tangent(w, w);
-  const dvi__turn turn = dvi__turn_of(w);
-  dvi__turn_rows(&turn, dvi__chart_stored(kind), y, compensation);
+  return dvi__turn_of(w);
 }
 
 void dvi__flow_move(const dvi__flow *f, const double *theta, const dvi__phase *state)
@@ -236,10 +234,43 @@ void dvi__flow_move(const dvi__flow *f, const double *theta, const dvi__phase *s
   for (int c = 0; c < f->system->slot_count; c++) {
     const dvi__factor_slot *slot = &f->system->slots[c];
     double *y = state->q + slot->q, *compensation = state->q_compensation + slot->q;
-    if (slot->kind == DVI__LINE)
+    if (slot->kind == DVI__LINE) {
       dvi__add_compensated(y, compensation, theta[slot->v]);
-    else
-      flow_turn_slot(slot->kind, theta + slot->v, y, compensation);
+      continue;
+    }
+    const dvi__turn turn = flow_turn(slot->kind, theta + slot->v);
+    dvi__turn_rows(&turn, dvi__chart_stored(slot->kind), y, compensation);
+  }
+}
+
+/* Compute y of a slot from y0. */
+static void place_slot(dvi__chart_kind kind, const double *theta, const double *y0, double *y)
+{
+  const int stored = dvi__chart_stored(kind);
+  if (kind == DVI__LINE) {
+    *y = *y0 + *theta;
+    return;
+  }
+  const dvi__turn turn = flow_turn(kind, theta);
+  for (int i = 0; i < stored; i += 3) {
+    double row[3] = {0}, change[3];
+    for (int j = 0; j < 3 && i + j < stored; j++) row[j] = y0[i + j];
+    dvi__turn_change(&turn, row, change);
+    for (int j = 0; j < 3 && i + j < stored; j++) y[i + j] = row[j] + change[j];
+  }
+}
+
+void dvi__flow_place(const dvi__flow *f, const double *theta, double h, const double *m_rate,
+                     const dvi__phase *start, double *q, double *p)
+{
+  for (int i = 0; i < f->system->nv; i++) p[i] = start->p[i] + h * m_rate[i];
+  for (int c = 0; c < f->system->slot_count; c++) {
+    const dvi__factor_slot *slot = &f->system->slots[c];
+    double *m = p + slot->v, momentum[3];
+    place_slot(slot->kind, theta + slot->v, start->q + slot->q, q + slot->q);
+    if (slot->kind != DVI__SPHERE) continue;
+    dvi__cross(m, q + slot->q, momentum);
+    memcpy(m, momentum, sizeof momentum);
   }
 }
 

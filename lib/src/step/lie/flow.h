@@ -30,6 +30,11 @@ dvi_status dvi__flow_rates(dvi__flow *flow, double t, const double *q, const dou
 void dvi__flow_plain(const dvi__flow *flow, const double *q, const double *p, const double *omega,
                      const double *m_rate, double *q_rate, double *p_rate);
 
+/* Compute q and p of a stage. The start, with m in the place of p, moves by theta, and m by
+ * h m_rate. Stages are right to a few roundings. */
+void dvi__flow_place(const dvi__flow *flow, const double *theta, double h, const double *m_rate,
+                     const dvi__phase *start, double *q, double *p);
+
 /* Move q, with its compensation, by theta. dvi__flow_theta_rate computes theta' of omega by the
  * inverse of dexp. theta_rate may be omega. */
 void dvi__flow_move(const dvi__flow *flow, const double *theta, const dvi__phase *state);

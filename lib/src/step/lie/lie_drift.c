@@ -1,23 +1,13 @@
 /* Consider a rigid motion with the centre of mass at R rho from x. Then p_x = m (dx + dR rho)/h
  * gives dx. The R0^T-part of (dR Jd + m dx rho^T)/h gives Pi. The rest Pi - rho x R0^T p_x belongs
  * to the free body with the second moments Jd - m rho rho^T about its centre. */
-#include "step/lie/lie_drift.h"
-
 #include <math.h>
+#include <string.h>
 
-#include "step/lie/coupled_drift.h"
-#include "step/lie/mass_blocks.h"
+#include "step/lie/lie_drift_struct.h"
+#include "step/lie/slot.h"
 #include "core/memory.h"
 #include "core/status.h"
-#include "group/turn.h"
-#include "group/vector.h"
-#include "num/compensated.h"
-
-struct dvi__lie_drift {
-  dvi__mass_blocks blocks;
-  dvi__moser_veselov_map by;
-  dvi__coupled_drift *together; /* NULL without coupled slots */
-};
 
 dvi_status dvi__lie_drift_create(const dvi_system *system, dvi__moser_veselov_map by,
                                  dvi_counters *counters, dvi__lie_drift **drift)
@@ -28,6 +18,7 @@ dvi_status dvi__lie_drift_create(const dvi_system *system, dvi__moser_veselov_ma
   dvi_status status = dvi__mass_blocks_create(system, &l->blocks);
   if (status == DVI_OK && l->blocks.coupled > 0)
     status = dvi__coupled_drift_create(system, l->blocks.together, counters, &l->together);
+  if (status == DVI_OK) status = dvi__lie_drift_find_runs(l);
   if (status != DVI_OK) dvi__lie_drift_destroy(drift);
   return status;
 }
@@ -38,6 +29,8 @@ void dvi__lie_drift_destroy(dvi__lie_drift **drift)
   if (l == NULL) return;
   dvi__coupled_drift_destroy(&l->together);
   dvi__mass_blocks_clear(&l->blocks);
+  dvi__release(l->run);
+  dvi__release(l->rows);
   dvi__release(l);
   *drift = NULL;
 }
@@ -50,23 +43,6 @@ void dvi__lie_drift_count(const dvi__lie_drift *l, int *alone, int *coupled)
 
 /* ---- kicks ---- */
 
-static void kick_body(double h, const double *V_q, const double *R, double *p, double *compensation)
-{
-  double moment[3] = {0};
-  dvi__chart_add_moment(DVI__ROTATION, R, V_q, moment);
-  for (int i = 0; i < 3; i++)
-    dvi__add_compensated(p + i, compensation + i,
-                         -h * (R[i] * moment[0] + R[3 + i] * moment[1] + R[6 + i] * moment[2]));
-}
-
-static void kick_direction(double h, const double *V_q, const double *y, double *p,
-                           double *compensation)
-{
-  const double radial = dvi__dot(y, V_q) / dvi__dot(y, y);
-  for (int i = 0; i < 3; i++)
-    dvi__add_compensated(p + i, compensation + i, -h * (V_q[i] - radial * y[i]));
-}
-
 void dvi__lie_drift_kick(const dvi__lie_drift *l, double h, const double *V_q,
                          const dvi__phase *state)
 {
@@ -76,9 +52,11 @@ void dvi__lie_drift_kick(const dvi__lie_drift *l, double h, const double *V_q,
     double *p = state->p + slot->v;
     if (slot->kind == DVI__LINE) dvi__add_compensated(p, state->p_compensation + slot->v, -h * *V);
     if (slot->kind == DVI__CIRCLE)
-      dvi__add_compensated(p, state->p_compensation + slot->v, -h * (y[0] * V[1] - y[1] * V[0]));
-    if (slot->kind == DVI__SPHERE) kick_direction(h, V, y, p, state->p_compensation + slot->v);
-    if (slot->kind == DVI__ROTATION) kick_body(h, V, y, p, state->p_compensation + slot->v);
+      dvi__slot_kick_circle(h, V, y, p, state->p_compensation + slot->v);
+    if (slot->kind == DVI__SPHERE)
+      dvi__slot_kick_direction(h, V, y, p, state->p_compensation + slot->v);
+    if (slot->kind == DVI__ROTATION)
+      dvi__slot_kick_body(h, V, y, p, state->p_compensation + slot->v);
   }
 }
 
@@ -89,7 +67,7 @@ void dvi__lie_drift_push(const dvi__lie_drift *l, double h, const double *F,
     const dvi__factor_slot *slot = &l->blocks.system->slots[c];
     double *p = state->p + slot->v, *compensation = state->p_compensation + slot->v;
     if (slot->kind == DVI__SPHERE)
-      kick_direction(-h, F + slot->v, state->q + slot->q, p, compensation);
+      dvi__slot_kick_direction(-h, F + slot->v, state->q + slot->q, p, compensation);
     else
       for (int i = 0; i < dvi__chart_velocities(slot->kind); i++)
         dvi__add_compensated(p + i, compensation + i, h * F[slot->v + i]);
@@ -121,86 +99,68 @@ static void drift_line(const dvi__mass_block *own, double h, const dvi__phase *s
   dvi__add_compensated(state->q + q, state->q_compensation + q, displacement[v]);
 }
 
-/* Return sin(a)/tan(a/2), for angles up to a quarter turn. */
-static double one_and_cosine(double sine)
+FUSED static void turn_circle(double sine, double y[3], double y_low[3])
 {
-  return 1 + sqrt((1 - sine) * (1 + sine));
+  dvi__slot_turn_circle(sine, y, y_low);
 }
 
 static dvi_status drift_circle(const dvi__mass_block *own, double h, const dvi__phase *state,
                                double *displacement)
 {
-  const int q = own->slot->q, v = own->slot->v;
+  const int v = own->slot->v;
+  double *q = state->q + own->slot->q, *low = state->q_compensation + own->slot->q;
+  double y[] = {q[0], q[1], 0}, y_low[] = {low[0], low[1], 0};
   const double sine = h * (state->p[v] / own->mass);
   if (!(fabs(sine) < 1)) return lie_drift_too_large(own, fabs(h * state->p[v]), own->mass);
   displacement[v] = asin(sine);
-  const dvi__turn turn = dvi__turn_of((const double[]){0, 0, -sine / one_and_cosine(sine)});
-  dvi__turn_rows(&turn, 2, state->q + q, state->q_compensation + q);
+  turn_circle(sine, y, y_low);
+  memcpy(q, y, 2 * sizeof *q);
+  memcpy(low, y_low, 2 * sizeof *low);
   return DVI_OK;
 }
 
-/* Rotate by a about mu, with sin(a) = |h mu/m|. The rotation keeps mu. */
+FUSED static double turn_direction(double h, double mass, double *y, double *y_low, double *p,
+                                   double *p_low, double *moved)
+{
+  return dvi__slot_turn_direction(h, mass, y, y_low, p, p_low, moved);
+}
+
 static dvi_status drift_sphere(const dvi__mass_block *own, double h, const dvi__phase *state,
                                double *displacement)
 {
   const int q = own->slot->q, v = own->slot->v;
-  double *y = state->q + q, *y_compensation = state->q_compensation + q, *p = state->p + v,
-         *p_compensation = state->p_compensation + v, w[3];
-  dvi__twofold mu[3];
-  dvi__turn_angular(y, y_compensation, p, p_compensation, mu);
-  for (int i = 0; i < 3; i++) w[i] = h * (mu[i].head / own->mass);
-  const double sine = sqrt(dvi__dot(w, w)), stretch = sine > 0 ? asin(sine) / sine : 1;
+  const double sine = turn_direction(h, own->mass, state->q + q, state->q_compensation + q,
+                                     state->p + v, state->p_compensation + v, displacement + v),
+               stretch = dvi__slot_stretch(sine);
   if (!(sine < 1)) return lie_drift_too_large(own, sine * own->mass, own->mass);
-  dvi__cross(w, y, displacement + v);
   for (int i = 0; i < 3; i++) displacement[v + i] *= stretch;
-  for (int i = 0; i < 3; i++) w[i] /= -one_and_cosine(sine);
-  const dvi__turn turn = dvi__turn_of(w);
-  dvi__turn_rows(&turn, 3, y, y_compensation);
-  dvi__turn_momentum(mu, DVI__TURN_ANY, y, y_compensation, p, p_compensation);
   return DVI_OK;
 }
 
-/* Set dx = h p_x/m - R0 (F - I) rho. */
-static void drift_place(const dvi__mass_block *own, double h, const dvi__phase *state,
-                        double *displacement)
+FUSED static void find_place(const dvi__mass_block *own, double h, const double *R,
+                             const double *p_x, const double *w, double *dx)
 {
-  const int x = own->slot->q + 9, v = own->slot->v;
-  const double *R = state->q + own->slot->q;
-  const dvi__turn back = dvi__turn_of(
-      (const double[]){-displacement[v], -displacement[v + 1], -displacement[v + 2]});
-  double moved[3];
-  dvi__turn_change(&back, own->centre, moved);
-  for (int i = 0; i < 3; i++)
-    displacement[v + 3 + i] = h * (state->p[v + 3 + i] / own->mass) - dvi__dot(R + 3 * i, moved);
-  dvi__add_compensated_all(3, state->q + x, state->q_compensation + x, displacement + v + 3);
-}
-
-/* Add sign rho x R^T p_x to Pi of a rigid motion. A sign of -1 gives the momentum about the centre
- * of mass. */
-static void lie_drift_shift_momentum(const dvi__mass_block *own, double sign,
-                                     const dvi__phase *state)
-{
-  const int v = own->slot->v;
-  double moment[3];
-  dvi__mass_block_moment(own, state->q, state->p, moment);
-  for (int i = 0; i < 3; i++)
-    dvi__add_compensated(state->p + v + i, state->p_compensation + v + i, sign * moment[i]);
+  dvi__slot_place(own->mass, own->centre, h, R, p_x, w, dx);
 }
 
 static dvi_status drift_body(const dvi__mass_block *own, dvi__moser_veselov_map by, double h,
                              const dvi__phase *state, double *displacement)
 {
-  double *p = state->p + own->slot->v, *p_compensation = state->p_compensation + own->slot->v,
-         *w = displacement + own->slot->v;
-  if (own->rigid) lie_drift_shift_momentum(own, -1, state);
+  const int q = own->slot->q, v = own->slot->v;
+  double *R = state->q + q, *x = R + 9, *p = state->p + v, *low = state->p_compensation + v,
+         *w = displacement + v;
+  if (own->rigid) dvi__slot_shift(-1, own->centre, R, p, low);
   const double impulse[] = {h * p[0], h * p[1], h * p[2]};
   if (!dvi__body_moser_veselov(own->body, by, impulse, w))
     return lie_drift_too_large(own, sqrt(dvi__dot(impulse, impulse)), own->body->largest);
-  if (own->rigid) drift_place(own, h, state, displacement);
+  if (own->rigid) {
+    find_place(own, h, R, p + 3, w, w + 3);
+    dvi__add_compensated_all(3, x, state->q_compensation + q + 9, w + 3);
+  }
   const dvi__turn turn = dvi__turn_of(w);
-  dvi__turn_rows(&turn, 9, state->q + own->slot->q, state->q_compensation + own->slot->q);
-  dvi__turn_rows(&turn, 3, p, p_compensation);
-  if (own->rigid) lie_drift_shift_momentum(own, 1, state);
+  dvi__turn_rows(&turn, 9, R, state->q_compensation + q);
+  dvi__turn_rows(&turn, 3, p, low);
+  if (own->rigid) dvi__slot_shift(1, own->centre, R, p, low);
   return DVI_OK;
 }
 
@@ -218,8 +178,11 @@ static dvi_status drift_alone(const dvi__mass_block *own, dvi__moser_veselov_map
 dvi_status dvi__lie_drift_drift(dvi__lie_drift *l, double h, const dvi__phase *state,
                                 double *displacement)
 {
-  for (int i = 0; i < l->blocks.alone; i++)
-    DVI_TRY(drift_alone(&l->blocks.block[i], l->by, h, state, displacement));
+  for (int i = 0, next; i < l->blocks.alone; i = next) {
+    next = i + l->run[i];
+    if (l->run[i] > 1 && dvi__lie_drift_run(l, i, h, state, displacement)) continue;
+    for (; i < next; i++) DVI_TRY(drift_alone(&l->blocks.block[i], l->by, h, state, displacement));
+  }
   return l->together == NULL ? DVI_OK
                              : dvi__coupled_drift_drift(l->together, h, state, displacement);
 }

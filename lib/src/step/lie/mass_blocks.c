@@ -2,9 +2,9 @@
 
 #include <string.h>
 
+#include "step/lie/slot.h"
 #include "core/memory.h"
 #include "core/status.h"
-#include "group/vector.h"
 
 static double mass_block_entry(const dvi_system *s, int row, int column)
 {
@@ -144,26 +144,12 @@ void dvi__mass_blocks_clear(dvi__mass_blocks *blocks)
 
 /* ---- velocities ---- */
 
-/* Set inside = R^T x. */
-static void into_body(const double *R, const double *x, double *inside)
-{
-  for (int i = 0; i < 3; i++) inside[i] = R[i] * x[0] + R[3 + i] * x[1] + R[6 + i] * x[2];
-}
-
-void dvi__mass_block_moment(const dvi__mass_block *block, const double *q, const double *p,
-                            double moment[3])
-{
-  double turned[3];
-  into_body(q + block->slot->q, p + block->slot->v + 3, turned);
-  dvi__cross(block->centre, turned, moment);
-}
-
 static void body_velocity(const dvi__mass_block *block, const double *q, const double *p, double *v)
 {
   const double *R = q + block->slot->q;
   double *own = v + block->slot->v, moment[3] = {0}, moved[3];
   memcpy(own, p + block->slot->v, (block->rigid ? 6 : 3) * sizeof *own);
-  if (block->rigid) dvi__mass_block_moment(block, q, p, moment);
+  if (block->rigid) dvi__slot_moment(block->centre, R, p + block->slot->v + 3, moment);
   for (int i = 0; i < 3; i++) own[i] -= moment[i];
   dvi__body_velocity(block->body, own, own);
   dvi__cross(own, block->centre, moved);

@@ -28,11 +28,6 @@ typedef struct dvi__mass_blocks {
 dvi_status dvi__mass_blocks_create(const dvi_system *system, dvi__mass_blocks *blocks);
 void dvi__mass_blocks_clear(dvi__mass_blocks *blocks);
 
-/* Compute rho x R^T p_x of the momenta p [nv] at q [nq], for a rigid motion. This is the difference
- * between Pi and the momentum about the centre of mass. */
-void dvi__mass_block_moment(const dvi__mass_block *block, const double *q, const double *p,
-                            double moment[3]);
-
 /* Write the velocities of a block to v [nv]. */
 void dvi__mass_block_velocity(const dvi__mass_block *block, const double *q, const double *p,
                               double *v);

@@ -13,11 +13,10 @@ void dvi__lagrange_weights(int s, const double *c, double tau, double *weight)
   }
 }
 
-/* Integrate by Gauss's rule with s nodes, which is exact. */
-dvi_status dvi__collocate(int s, const double *c, double a[DVI__STAGES_MOST][DVI__STAGES_MOST])
+void dvi__collocate_by(int s, const double *c, const double *node, const double *gauss,
+                       double a[DVI__STAGES_MOST][DVI__STAGES_MOST])
 {
-  double node[DVI__STAGES_MOST], gauss[DVI__STAGES_MOST], at_node[DVI__STAGES_MOST];
-  DVI_TRY(dvi_quadrature(DVI_GAUSS, s, node, gauss));
+  double at_node[DVI__STAGES_MOST];
   for (int i = 0; i < s; i++) {
     for (int j = 0; j < s; j++) a[i][j] = 0;
     for (int k = 0; k < s; k++) {
@@ -25,5 +24,12 @@ dvi_status dvi__collocate(int s, const double *c, double a[DVI__STAGES_MOST][DVI
       for (int j = 0; j < s; j++) a[i][j] += c[i] * gauss[k] * at_node[j];
     }
   }
+}
+
+dvi_status dvi__collocate(int s, const double *c, double a[DVI__STAGES_MOST][DVI__STAGES_MOST])
+{
+  double node[DVI__STAGES_MOST], gauss[DVI__STAGES_MOST];
+  DVI_TRY(dvi_quadrature(DVI_GAUSS, s, node, gauss));
+  dvi__collocate_by(s, c, node, gauss, a);
   return DVI_OK;
 }

@@ -123,15 +123,25 @@ static dvi_status factor_kinetic(dvi__flow_series *f)
   return dvi__linear_factor(f->kinetic, f->L_vv);
 }
 
-/* Compute v_{k+1} and q_{k+2}. For a constant mass [L_v]_{k+1} is M v_{k+1} alone. */
+/* Evaluate [L_q]_k, and [L_v]_{k+1} without its part of v_{k+1}. For a constant mass this is 0, and
+ * q_{k+1} is known, which gives [L_q]_{k+1}, too. */
+static dvi_status evaluate_forces(dvi__flow_series *f, int k)
+{
+  const size_t n = (size_t)f->n;
+  const int general = f->system->lagrangian != NULL,
+            degree = general || k + 3 <= f->degree ? k + 1 : k;
+  memset(f->v + (size_t)(k + 1) * n, 0, n * sizeof(double));
+  return dvi__jet_along(f->jet, degree, f->t, f->q, f->v,
+                        &(dvi__jets){.L_q = f->L_q, .L_v = general ? f->L_v : NULL});
+}
+
+/* Compute v_{k+1} and q_{k+2}. */
 static dvi_status next_coefficient(dvi__flow_series *f, int k)
 {
   const size_t n = (size_t)f->n;
   const int general = f->system->lagrangian != NULL;
   double *v = f->v + (size_t)(k + 1) * n, *q = f->q + (size_t)(k + 2) * n;
-  memset(v, 0, n * sizeof *v);
-  DVI_TRY(dvi__jet_along(f->jet, general ? k + 1 : k, f->t, f->q, f->v,
-                         &(dvi__jets){.L_q = f->L_q, .L_v = general ? f->L_v : NULL}));
+  if (general || k % 2 == 0) DVI_TRY(evaluate_forces(f, k));
   for (size_t i = 0; i < n; i++)
     v[i] = f->L_q[(size_t)k * n + i] / (k + 1) - (general ? f->L_v[(size_t)(k + 1) * n + i] : 0);
   solve_kinetic(f, v);

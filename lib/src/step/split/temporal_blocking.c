@@ -7,6 +7,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "num/simd/wide.h"
+#include "num/simd/width.h"
 #include "num/team.h"
 #include "step/split/window.h"
 
@@ -251,6 +252,21 @@ static range range_at(const part *own, ptrdiff_t x, ptrdiff_t lag)
   return r;
 }
 
+/* Fetch share k of the next block from memory, while this one is computed. A pass of one substep
+ * computes too little for that. GCC drops calls of functions that do nothing else. */
+INLINE void fetch_share(const part *own, ptrdiff_t x, int k)
+{
+  const dvi__blocking_step *s = &own->pass->step;
+  const range next = range_at(own, x + own->block, 0);
+  const ptrdiff_t lines = (next.last - next.first + LINE - 1) / LINE;
+  const double *const read[] = {s->from.q, s->from.p, s->from.q_compensation,
+                                s->from.p_compensation, s->gradient};
+  if (own->window.in[0] == NULL || s->count == 1) return;
+  for (ptrdiff_t i = lines * k / s->count; i < lines * (k + 1) / s->count; i++)
+    for (int a = 0; a < ARRAYS - (s->gradient == NULL); a++)
+      __builtin_prefetch(read[a] + next.first + LINE * i, 0, 2);
+}
+
 /* Take all operations, each in its range when the first one is at x. */
 static int work_at(const part *own, ptrdiff_t x)
 {
@@ -260,6 +276,7 @@ static int work_at(const part *own, ptrdiff_t x)
   if (s->gradient == NULL && r.first < r.last && !blocking_gradient(own, s->t0, s->from.q, r))
     return 0;
   for (int k = 0; k < s->count; k++) {
+    fetch_share(own, x, k);
     r = range_at(own, x, 2 * k * lag);
     if (r.first < r.last && !blocking_kick_drift(own, k, r)) return 0;
     r = range_at(own, x, (2 * k + 1) * lag);

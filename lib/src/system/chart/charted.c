@@ -49,19 +49,19 @@ static dvi_status charted_allocate(dvi__charted *x)
 {
   const size_t group = (size_t)x->base->n * DVI__GROUP, slots = (size_t)x->base->slot_count;
   x->chart = DVI_NEW(dvi__chart, slots);
-  x->functions = DVI_NEW(dvi__functions, DVI__GROUP * slots);
+  x->functions = DVI_NEW(dvi__functions, slots);
+  x->stumpff = DVI_NEW(double, DVI__NODE_FUNCTIONS *DVI__GROUP *slots);
   x->t = DVI_NEW(double, DVI__GROUP);
   x->y = DVI_NEW(double, group);
   x->rate = DVI_NEW(double, group);
   x->L_y = DVI_NEW(double, group);
   x->w = DVI_NEW(double, group);
   x->L_yy = DVI_NEW(double, (size_t)dvi__pattern_entries(&x->base->qq) * DVI__GROUP);
-  x->T = DVI_NEW(double, 3 * (size_t)x->base->n);
-  x->S = DVI_NEW(double, 3 * (size_t)x->base->n);
-  x->curved = DVI_NEW(double, 9 * slots);
-  x->mixed = DVI_NEW(double, 9 * slots);
-  if (x->chart && x->functions && x->t && x->y && x->rate && x->L_y && x->w && x->L_yy && x->T &&
-      x->S && x->curved && x->mixed)
+  x->T = DVI_NEW(double, 3 * group);
+  x->S = DVI_NEW(double, 3 * group);
+  x->slot_blocks = DVI_NEW(double, 4 * 9 * DVI__GROUP);
+  if (x->chart && x->functions && x->stumpff && x->t && x->y && x->rate && x->L_y && x->w &&
+      x->L_yy && x->T && x->S && x->slot_blocks)
     return DVI_OK;
   return dvi__fail(DVI_NO_MEMORY, "charts: no memory for %zu factors", slots);
 }
@@ -75,7 +75,7 @@ static dvi_status charted_fill(dvi__charted *x, const dvi_system *system, int re
   DVI_TRY(charted_allocate(x));
   DVI_TRY(dvi__evaluator_create(system, DVI__GROUP, DVI__HESSIANS, counters, &x->evaluator));
   if (reduced) DVI_TRY(dvi__reduced_create(system, &x->reduced));
-  if (!reduced) DVI_TRY(dvi__charted_find_apart(x));
+  if (!reduced) DVI_TRY(dvi__charted_read_masses(x));
   DVI_TRY(dvi__charted_make_patterns(x));
   if (reduced) DVI_TRY(dvi__reduced_place(x));
   return declare_charted_system(x);
@@ -103,13 +103,14 @@ void dvi__charted_destroy(dvi__charted **charted)
   dvi__reduced_clear(&x->reduced);
   dvi__charted_clear_rows(x);
   dvi__charted_clear_force(x);
-  void *const own[] = {
-      x->functions, x->chart,     x->slot,      x->slot_of_x,  x->t,          x->y,
-      x->rate,      x->L_y,       x->w,         x->L_yy,       x->T,          x->S,
-      x->curved,    x->mixed,     x->in_qq,     x->mass_in_qq, x->mass_in_qv, x->mass_in_vv,
-      x->own_in_qq, x->own_in_qv, x->own_in_vv, x->coupled_in, x->W,          x->end,
-      x->moment,    x->impulse,   x->turned_T,  x->turned_S,   x->C_q1,       x->C_qq,
-      x->C_qv,      x->kick,      x->first,     x->width,      x->inertia,    x->stumpff};
+  dvi__charted_clear_blocks(x);
+  void *const own[] = {x->functions,   x->chart,    x->slot,      x->slot_of_x, x->t,
+                       x->y,           x->rate,     x->L_y,       x->w,         x->L_yy,
+                       x->T,           x->S,        x->own_in_qq, x->own_in_qv, x->own_in_vv,
+                       x->coupled_in,  x->W,        x->end,       x->moment,    x->impulse,
+                       x->turned_T,    x->turned_S, x->C_q1,      x->C_qq,      x->C_qv,
+                       x->kick,        x->first,    x->width,     x->inertia,   x->own_mass,
+                       x->slot_blocks, x->stumpff};
   for (size_t i = 0; i < sizeof own / sizeof *own; i++) dvi__release(own[i]);
   dvi__release(x);
   *charted = NULL;

@@ -31,7 +31,7 @@ static dvi_status place_force(dvi__charted *x, const double *xi, const double *r
     const dvi__factor_slot *slot = &x->base->slots[c];
     const double angle = dvi__chart_angle(slot->kind, xi + slot->x);
     if (!(angle < dvi__chart_bound(slot->kind))) return dvi__charted_too_large(angle);
-    dvi__functions *functions = dvi__charted_functions(x, c, 0);
+    dvi__functions *functions = &x->functions[c];
     dvi__chart_functions(slot->kind, xi + slot->x, functions);
     dvi__chart_point(&x->chart[c], functions, xi + slot->x, rate + slot->x, x->y + slot->q,
                      velocity);
@@ -52,8 +52,8 @@ static dvi_status force_in_charts(dvi__charted *x, double t, const double *xi, c
   DVI_TRY(dvi__forces(x->evaluator, DVI__FORCES, 1, &t, x->y, x->force_v, x->force));
   for (int c = 0; c < x->base->slot_count; c++) {
     const dvi__factor_slot *slot = &x->base->slots[c];
-    pull_force(slot, dvi__charted_functions(x, c, 0), x->T + 3 * (size_t)slot->q, xi + slot->x,
-               rate + slot->x, x->force + slot->v, F + slot->x);
+    pull_force(slot, &x->functions[c], x->T + 3 * (size_t)slot->q, xi + slot->x, rate + slot->x,
+               x->force + slot->v, F + slot->x);
   }
   return DVI_OK;
 }

@@ -25,33 +25,32 @@ void dvi__charted_gather(const dvi__factor_slot *slot, int count, int k, const d
     one[i] = batch[(size_t)(slot->x + i) * (size_t)count + (size_t)k];
 }
 
-/* Compute y and rate of a slot, and its chart's functions, at point k of a group. This is point
- * `from` of a batch. */
-static dvi_status find_point(dvi__charted *x, int c, int count, int from, int group, int k,
-                             const double *xi, const double *rate)
+dvi__chart_nodes dvi__charted_nodes(const dvi__charted *x, int c, int count, int first, int group,
+                                    const double *xi, const double *rate)
 {
   const dvi__factor_slot *slot = &x->base->slots[c];
-  double at[DVI__CHART_SIZE], u[DVI__CHART_SIZE], y[DVI__CHART_POINT], v[DVI__CHART_POINT];
-  dvi__charted_gather(slot, count, from, xi, at);
-  dvi__charted_gather(slot, count, from, rate, u);
-  const double angle = dvi__chart_angle(slot->kind, at);
-  if (!(angle < dvi__chart_bound(slot->kind))) return dvi__charted_too_large(angle);
-  dvi__functions *functions = dvi__charted_functions(x, c, k);
-  dvi__chart_functions(slot->kind, at, functions);
-  dvi__chart_point(&x->chart[c], functions, at, u, y, v);
-  for (int i = 0; i < dvi__chart_stored(slot->kind); i++) {
-    x->y[(slot->q + i) * group + k] = y[i];
-    x->rate[(slot->q + i) * group + k] = v[i];
-  }
-  return DVI_OK;
+  const size_t local = (size_t)slot->x * (size_t)count + (size_t)first,
+               stored = (size_t)slot->q * (size_t)group;
+  return (dvi__chart_nodes){.count = group,
+                            .local = (size_t)count,
+                            .xi = xi + local,
+                            .rate = rate + local,
+                            .functions = x->stumpff + DVI__NODE_FUNCTIONS * DVI__GROUP * c,
+                            .y = x->y + stored,
+                            .v = x->rate + stored,
+                            .a = x->L_y + stored,
+                            .b = x->w + stored};
 }
 
 /* Compute t, y and rate of the group that begins at point `first`. */
 static dvi_status find_points(dvi__charted *x, int count, int first, int group, const double *t,
                               const double *xi, const double *rate)
 {
-  for (int c = 0; c < x->base->slot_count; c++)
-    for (int k = 0; k < group; k++) DVI_TRY(find_point(x, c, count, first + k, group, k, xi, rate));
+  for (int c = 0; c < x->base->slot_count; c++) {
+    const dvi__chart_nodes nodes = dvi__charted_nodes(x, c, count, first, group, xi, rate);
+    const double beyond = dvi__chart_place_nodes(&x->chart[c], &nodes);
+    if (beyond != 0) return dvi__charted_too_large(beyond);
+  }
   memcpy(x->t, t + first, (size_t)group * sizeof *t);
   return DVI_OK;
 }
@@ -83,63 +82,15 @@ dvi_status dvi__charted_forces(dvi__charted *x, int count, int first, int group,
   return dvi__lagrangian_gradient(x->evaluator, group, x->t, x->y, x->rate, x->L_y, x->w);
 }
 
-void dvi__charted_pair(const dvi__factor_slot *slot, int group, int k, const double *first,
-                       const double *second, double *a, double *b)
-{
-  for (int i = 0; i < dvi__chart_stored(slot->kind); i++) {
-    a[i] = first[(slot->q + i) * group + k];
-    b[i] = second[(slot->q + i) * group + k];
-  }
-}
-
-static void pull_back_gradient(const dvi__charted *x, int count, int first, int group,
-                               const double *xi, const double *rate, double *L_xi, double *L_rate)
-{
-  for (int c = 0; c < x->base->slot_count; c++) {
-    const dvi__factor_slot *slot = &x->base->slots[c];
-    for (int k = 0; k < group; k++) {
-      double at[3], u[3], a[DVI__CHART_POINT], b[DVI__CHART_POINT], in_xi[3], in_rate[3];
-      dvi__charted_gather(slot, count, first + k, xi, at);
-      dvi__charted_gather(slot, count, first + k, rate, u);
-      dvi__charted_pair(slot, group, k, x->L_y, x->w, a, b);
-      dvi__chart_gradient(&x->chart[c], dvi__charted_functions(x, c, k), at, u, a, b, in_xi,
-                          in_rate);
-      for (int i = 0; i < dvi__chart_size(slot->kind); i++) {
-        const size_t to = (size_t)(slot->x + i) * (size_t)count + ((size_t)first + (size_t)k);
-        L_xi[to] = in_xi[i];
-        L_rate[to] = in_rate[i];
-      }
-    }
-  }
-}
-
-/* Subtract m y' from w for each vector of a slot, m its own mass. v x m v is 0, but its rounded
- * value is not, and always errs to one side. */
-static void take_own(const dvi__charted *x, const dvi__factor_slot *slot, const double *rate,
-                     double *w)
-{
-  const int stored = dvi__chart_stored(slot->kind), vectors = stored / 3;
-  for (int i = 0; i < stored; i++) {
-    const int j = slot->q + i % vectors, e = dvi__pattern_find(&x->base->vv, j, j);
-    if (e >= 0) w[i] -= x->base->mass_values[e] * rate[i];
-  }
-}
-
-/* Compute N at the nodes of a group. */
+/* Compute N at the nodes of a group. Masses that couple no factors have no moment. */
 void dvi__charted_find_moments(dvi__charted *x, int first, int group)
 {
   for (int c = 0; c < x->base->slot_count; c++) {
-    const dvi__factor_slot *slot = &x->base->slots[c];
-    for (int k = 0; k < group && dvi__turns(slot); k++) {
-      double y[DVI__CHART_POINT], v[DVI__CHART_POINT], a[DVI__CHART_POINT], b[DVI__CHART_POINT],
-          N[3] = {0};
-      dvi__charted_pair(slot, group, k, x->y, x->rate, y, v);
-      dvi__charted_pair(slot, group, k, x->L_y, x->w, a, b);
-      dvi__chart_add_moment(slot->kind, y, a, N);
-      take_own(x, slot, v, b);
-      dvi__chart_add_moment(slot->kind, v, b, N);
-      for (int i = 0; i < 3; i++) x->moment[(3 * c + i) * x->capacity + first + k] = N[i];
-    }
+    const dvi__chart_nodes nodes = dvi__charted_nodes(x, c, 0, 0, group, NULL, NULL);
+    if (dvi__turns(&x->base->slots[c]))
+      dvi__chart_moments_of_nodes(&x->chart[c], x->inertia != NULL ? NULL : x->own_mass + 3 * c,
+                                  &nodes, (size_t)x->capacity,
+                                  x->moment + 3 * c * x->capacity + first);
   }
 }
 
@@ -147,8 +98,20 @@ static dvi_status gradient_of_group(dvi__charted *x, int count, int first, int g
                                     const double *t, const double *xi, const double *rate,
                                     double *L_xi, double *L_rate)
 {
-  DVI_TRY(dvi__charted_forces(x, count, first, group, t, xi, rate));
-  pull_back_gradient(x, count, first, group, xi, rate, L_xi, L_rate);
+  const int apart = x->inertia != NULL;
+  DVI_TRY(find_points(x, count, first, group, t, xi, rate));
+  DVI_TRY(dvi__lagrangian_gradient(x->evaluator, group, x->t, x->y, apart ? NULL : x->rate, x->L_y,
+                                   apart ? NULL : x->w));
+  for (int c = 0; c < x->base->slot_count; c++) {
+    const size_t to = (size_t)x->base->slots[c].x * (size_t)count + (size_t)first;
+    dvi__chart_nodes nodes = dvi__charted_nodes(x, c, count, first, group, xi, rate);
+    nodes.in_xi = L_xi + to;
+    nodes.in_rate = L_rate + to;
+    if (apart)
+      dvi__chart_move_nodes(&x->chart[c], x->inertia + 9 * c, &nodes);
+    else
+      dvi__chart_differentiate_nodes(&x->chart[c], &nodes);
+  }
   if (dvi__charted_on_path(x, count)) dvi__charted_find_moments(x, first, group);
   return DVI_OK;
 }
@@ -160,7 +123,7 @@ int dvi__charted_gradient(int count, const double *t, const double *xi, const do
   dvi_status status = DVI_OK;
   x->counters->gradients -= count; /* the calling evaluator counts the same points */
   for (int first = 0; first < count && status == DVI_OK; first += DVI__GROUP)
-    status = (x->inertia != NULL ? dvi__charted_gradient_apart : gradient_of_group)(
-        x, count, first, smaller_batch(DVI__GROUP, count - first), t, xi, rate, L_xi, L_rate);
+    status = gradient_of_group(x, count, first, smaller_batch(DVI__GROUP, count - first), t, xi,
+                               rate, L_xi, L_rate);
   return dvi__charted_verdict(x, status);
 }

@@ -15,77 +15,6 @@
 #include "core/memory.h"
 #include "core/status.h"
 
-/* Compute values [stored*size], the rows y x times W^T. */
-static void turn_rows(const dvi__factor_slot *slot, const double *y, const double *W,
-                      double *values)
-{
-  const int size = dvi__chart_size(slot->kind);
-  double rows[3 * DVI__CHART_POINT];
-  dvi__chart_turns(slot->kind, y, rows);
-  for (int i = 0; i < dvi__chart_stored(slot->kind); i++)
-    for (int b = 0; b < size; b++)
-      values[i * size + b] = rows[3 * i] * W[3 * b] + rows[3 * i + 1] * W[3 * b + 1] +
-                             rows[3 * i + 2] * W[3 * b + 2];
-}
-
-static void times_W(int size, const double *W, const double *columns, double *product)
-{
-  for (int a = 0; a < size; a++)
-    for (int b = 0; b < size; b++)
-      product[a * size + b] = W[3 * a] * columns[3 * b] + W[3 * a + 1] * columns[3 * b + 1] +
-                              W[3 * a + 2] * columns[3 * b + 2];
-}
-
-/* Compute W times the change of the moment N of fixed covectors a, b with xi and its rate. These
- * are T_j x a + S_j x b and T_j x b. */
-static void moment_change(const dvi__charted *x, const dvi__factor_slot *slot, const double *W,
-                          const double *a, const double *b, double *in_xi, double *in_rate)
-{
-  const int size = dvi__chart_size(slot->kind);
-  double by_xi[9] = {0}, by_rate[9] = {0};
-  for (int j = 0; j < size; j++) {
-    double T[DVI__CHART_POINT], S[DVI__CHART_POINT];
-    for (int i = 0; i < dvi__chart_stored(slot->kind); i++) {
-      T[i] = x->T[3 * slot->q + i * size + j];
-      S[i] = x->S[3 * slot->q + i * size + j];
-    }
-    dvi__chart_add_moment(slot->kind, T, a, by_xi + 3 * j);
-    dvi__chart_add_moment(slot->kind, S, b, by_xi + 3 * j);
-    dvi__chart_add_moment(slot->kind, T, b, by_rate + 3 * j);
-  }
-  times_W(size, W, by_xi, in_xi);
-  times_W(size, W, by_rate, in_rate);
-}
-
-/* Add W N_xi and W N_xi' at point k of a group to C_qq and C_qv. The moments of masses that couple
- * no factors are 0. */
-void dvi__charted_add_moment_changes(dvi__charted *x, int count, int first, int group, int k)
-{
-  const size_t to = (size_t)first + (size_t)k, numbers = 3 * (size_t)x->base->n;
-  const int apart = x->inertia != NULL;
-  memset(x->turned_T, 0, numbers * sizeof(double));
-  if (!apart) memset(x->turned_S, 0, numbers * sizeof(double));
-  for (int c = 0; c < x->base->slot_count; c++) {
-    const dvi__factor_slot *slot = &x->base->slots[c];
-    double y[DVI__CHART_POINT], v[DVI__CHART_POINT], a[DVI__CHART_POINT], b[DVI__CHART_POINT],
-        in_xi[9], in_rate[9];
-    if (!dvi__turns(slot)) continue;
-    dvi__charted_pair(slot, group, k, x->y, x->rate, y, v);
-    dvi__charted_pair(slot, group, k, x->L_y, x->w, a, b);
-    turn_rows(slot, y, x->W + 9 * c, x->turned_T + 3 * (size_t)slot->q);
-    if (apart)
-      memset(b, 0, sizeof b);
-    else
-      turn_rows(slot, v, x->W + 9 * c, x->turned_S + 3 * (size_t)slot->q);
-    moment_change(x, slot, x->W + 9 * c, a, b, in_xi, in_rate);
-    dvi__charted_add_own_blocks(x, c, in_xi, in_rate, (size_t)count, to, x->C_qq, x->C_qv);
-  }
-  dvi__charted_add_potentials(x, group, k, x->turned_T, (size_t)count, to, x->C_qq);
-  if (apart) return;
-  dvi__charted_add_mass_product(x, x->mass_in_qq, x->turned_S, x->S, (size_t)count, to, x->C_qq);
-  dvi__charted_add_mass_product(x, x->mass_in_qv, x->turned_S, x->T, (size_t)count, to, x->C_qv);
-}
-
 void dvi__charted_find_turns(dvi__charted *x)
 {
   for (int c = 0; c < x->base->slot_count; c++)
@@ -339,8 +268,8 @@ static dvi_status charted_reserve(dvi__charted *x, int nodes)
   x->first = DVI_NEW(int, x->base->nx);
   x->width = DVI_NEW(int, x->base->nx);
   x->moment = DVI_NEW(double, 3 * slots * (size_t)nodes);
-  x->turned_T = DVI_NEW(double, 3 * n);
-  x->turned_S = DVI_NEW(double, 3 * n);
+  x->turned_T = DVI_NEW(double, 3 * n * DVI__GROUP);
+  x->turned_S = DVI_NEW(double, 3 * n * DVI__GROUP);
   x->C_q1 = DVI_NEW(double, qq);
   x->C_qq = DVI_NEW(double, qq *(size_t)nodes);
   x->C_qv = DVI_NEW(double, (size_t)dvi__pattern_entries(&x->qv) * (size_t)nodes);

@@ -168,10 +168,7 @@ dvi_status dvi__charted_make_patterns(dvi__charted *x)
   DVI_TRY(dvi__charted_slot_pattern(x, qq, vv, 0, &x->qq));
   DVI_TRY(dvi__charted_slot_pattern(x, vv, NULL, 0, &x->qv));
   DVI_TRY(dvi__charted_slot_pattern(x, vv, NULL, 1, &x->vv));
-  DVI_TRY(dvi__charted_place_entries(x, qq, &x->qq, &x->in_qq));
-  DVI_TRY(dvi__charted_place_entries(x, vv, &x->qq, &x->mass_in_qq));
-  DVI_TRY(dvi__charted_place_entries(x, vv, &x->qv, &x->mass_in_qv));
-  DVI_TRY(dvi__charted_place_entries(x, vv, &x->vv, &x->mass_in_vv));
+  DVI_TRY(dvi__charted_make_blocks(x));
   DVI_TRY(dvi__charted_place_own(x, &x->qq, &x->own_in_qq));
   return dvi__charted_place_own(x, &x->qv, &x->own_in_qv);
 }

@@ -127,7 +127,7 @@ static dvi_status place_rows(const dvi__charted_rows *rows, const double *xi, in
     const dvi__factor_slot *slot = &x->base->slots[c];
     const double angle = dvi__chart_angle(slot->kind, xi + slot->x);
     if (!(angle < dvi__chart_bound(slot->kind))) return dvi__charted_too_large(angle);
-    dvi__functions *functions = dvi__charted_functions(x, c, 0);
+    dvi__functions *functions = &x->functions[c];
     dvi__chart_functions(slot->kind, xi + slot->x, functions);
     dvi__chart_point(&x->chart[c], functions, xi + slot->x, rest, x->rows_y + slot->q, rate);
     if (tangents)
@@ -206,7 +206,7 @@ static void add_rows_curvature(const dvi__charted_rows *rows, const double *xi, 
     const dvi__factor_slot *slot = &x->base->slots[c];
     double curved[9], mixed[9];
     if (slot->kind == DVI__LINE) continue;
-    dvi__chart_curvature(&x->chart[c], dvi__charted_functions(x, c, 0), xi + slot->x, rest,
+    dvi__chart_curvature(&x->chart[c], &x->functions[c], xi + slot->x, rest,
                          x->rows_covector + slot->q, none, curved, mixed);
     dvi__charted_add_block(&rows->own_in_qq[c], dvi__chart_size(slot->kind),
                            dvi__chart_size(slot->kind), curved, 1, 0, phi_w);

@@ -2,6 +2,7 @@
 #ifndef DVI_SYSTEM_CHART_CHARTED_STRUCT_H
 #define DVI_SYSTEM_CHART_CHARTED_STRUCT_H
 #include "core/status.h"
+#include "group/chart_nodes.h"
 #include "system/chart/charted.h"
 #include "system/chart/reduced.h"
 
@@ -13,6 +14,29 @@ enum { DVI__GROUP = 8 };
 typedef struct dvi__place {
   int first, column;
 } dvi__place;
+
+/* Entry of a block of two slots, and its row and column there. */
+typedef struct dvi__block_entry {
+  int entry, row, column;
+} dvi__block_entry;
+
+/* Block of two slots in a matrix of stored coordinates, with the first of its entries, which end
+ * where those of the next block begin, and its places in the new system's patterns. */
+typedef struct dvi__slot_block {
+  int row, column, first;
+  dvi__place qq, qv, vv;
+} dvi__slot_block;
+
+typedef struct dvi__slot_blocks {
+  int count;
+  dvi__slot_block *block; /* [count+1] */
+  dvi__block_entry *entry;
+} dvi__slot_blocks;
+
+/* Second derivatives of the new system, in the order of its patterns. */
+typedef struct dvi__hessian {
+  double *qq, *qv, *vv;
+} dvi__hessian;
 
 /* Blocks that couple a body's rotation and its place x. Rotation is in rows and x in columns of qq
  * and qv. vv has both ways. */
@@ -41,24 +65,25 @@ struct dvi__charted {
   int *slot, *slot_of_x;
   dvi_status failure; /* status and sentence of the last evaluation */
   char sentence[DVI__SENTENCE_SIZE];
-  /* functions [slots*GROUP] of the charts, at the points of a group */
+  /* functions [slots] of the charts, at one point */
   dvi__functions *functions;
   /* A group's points t [GROUP], others [nq*GROUP], with w = M y'. */
   double *t, *y, *rate, *L_y, *w;
-  double *L_yy;            /* second derivatives [entries*GROUP] */
-  double *T, *S;           /* tangents [nq*3] of one point */
-  double *curved, *mixed;  /* second derivatives [slots*9] of one point */
-  dvi__pattern qq, qv, vv; /* patterns of the new system */
-  /* blocks of every entry of the stored coordinates' matrices */
-  dvi__place *in_qq, *mass_in_qq, *mass_in_qv, *mass_in_vv;
+  double *L_yy; /* second derivatives [entries*GROUP] */
+  /* tangents [nq*3*GROUP] at the points of a group, number i of point k at i*GROUP + k */
+  double *T, *S;
+  double *slot_blocks;                 /* [4*9*GROUP] a slot's second derivatives there */
+  dvi__pattern qq, qv, vv;             /* patterns of the new system */
+  dvi__slot_blocks masses, potentials; /* blocks of vv that are not 0, and of qq */
   /* Diagonal blocks [slots] of the slots. Lines may have none. */
   dvi__place *own_in_qq, *own_in_qv;
   /* Parts of a Lagrangian without potentials that the group leaves invariant (charted_reduced.c).
    * reduced.bodies is NULL for other Lagrangians. */
   dvi__reduced reduced;
-  /* Masses of factors that it does not couple [slots*9], and Stumpff's functions at a group's
-   * points (charted_apart.c). NULL if the mass couples factors. */
-  double *inertia, *stumpff;
+  /* Masses of factors that it does not couple [slots*9], NULL if the mass couples factors, and the
+   * diagonal of each slot's own mass [slots*3] (charted_mass.c). */
+  double *inertia, *own_mass;
+  double *stumpff; /* [slots*DVI__NODE_FUNCTIONS*GROUP] Stumpff's functions at a group's points */
   /* Constraints [base's count], and work at one point: y, dy/dxi, gradients, Hessian, gradient of
    * phi.w, numbers of dvi__holonomic_at. */
   dvi__charted_rows *rows;
@@ -76,7 +101,7 @@ struct dvi__charted {
    * way. A rotation has them in the centre's frame. */
   double *impulse, *kick;
   int *first, *width;          /* first coordinate [nx] of every coordinate's block, and its size */
-  double *turned_T, *turned_S; /* y x and y' x, times W, [nq*3] of one point */
+  double *turned_T, *turned_S; /* y x and y' x, times W, as T and S */
   double *C_q1, *C_qq, *C_qv;  /* derivatives [entries], [entries*capacity] */
 };
 
@@ -92,12 +117,6 @@ static inline const double *dvi__charted_tangents_of(const dvi__factor_slot *slo
 {
   return tangents + 3 * (size_t)slot->q +
          (size_t)(i - slot->q) * (size_t)dvi__chart_size(slot->kind);
-}
-
-/* Return the functions of slot c at point k of a group. */
-static inline dvi__functions *dvi__charted_functions(const dvi__charted *x, int c, int k)
-{
-  return &x->functions[(size_t)c * DVI__GROUP + (size_t)k];
 }
 
 /* Make the charts' constraints, and declare them. `list` [base's count] is for the terms of the new
@@ -150,13 +169,8 @@ int dvi__reduced_hessian(int count, const double *t, const double *xi, const dou
                          double *L_qq, double *L_qv, double *L_vv, void *user);
 dvi_status dvi__reduced_place(dvi__charted *charted);
 
-/* Read the masses if the mass couples no two factors. */
-dvi_status dvi__charted_find_apart(dvi__charted *charted);
-
-/* Compute the gradient at a group of points from `first` on, for such masses. */
-dvi_status dvi__charted_gradient_apart(dvi__charted *charted, int count, int first, int group,
-                                       const double *t, const double *xi, const double *rate,
-                                       double *L_xi, double *L_rate);
+/* Read the masses of slots. */
+dvi_status dvi__charted_read_masses(dvi__charted *charted);
 
 /* Compute the change of a body's angular momentum on a path, in the frame of the centre. A moving x
  * with momentum changes the angular one by Ad*. */
@@ -186,21 +200,24 @@ void dvi__charted_gather(const dvi__factor_slot *slot, int count, int k, const d
 dvi_status dvi__charted_forces(dvi__charted *charted, int count, int first, int group,
                                const double *t, const double *xi, const double *rate);
 
-/* Copy a slot's numbers of two of these arrays at point k of a group. */
-void dvi__charted_pair(const dvi__factor_slot *slot, int group, int k, const double *first,
-                       const double *second, double *a, double *b);
+/* Give the numbers of slot c at a group of points that begins at point `first` of a batch. */
+dvi__chart_nodes dvi__charted_nodes(const dvi__charted *charted, int c, int count, int first,
+                                    int group, const double *xi, const double *rate);
 
 /* Compute N at the nodes of a group whose forces are known. */
 void dvi__charted_find_moments(dvi__charted *charted, int first, int group);
 
-/* Add left^T M right for point k of `count` to the blocks of `in`. The second function adds left^T
- * L_yy T to those of qq, for point in_group of a group. Rows of left and right are those of stored
- * coordinates. */
-void dvi__charted_add_mass_product(const dvi__charted *charted, const dvi__place *in,
-                                   const double *left, const double *right, size_t count, size_t k,
-                                   double *values);
-void dvi__charted_add_potentials(const dvi__charted *charted, int group, int in_group,
-                                 const double *left, size_t count, size_t k, double *L_qq);
+/* List the blocks of the mass and of the potentials (charted_blocks.c). */
+dvi_status dvi__charted_make_blocks(dvi__charted *charted);
+void dvi__charted_clear_blocks(dvi__charted *charted);
+
+/* Add the products of T, S and, on a path, turned_T and turned_S with these blocks, for the group
+ * that begins at point `first` of a batch. */
+void dvi__charted_add_blocks(const dvi__charted *charted, int count, int first, int group,
+                             int on_path, const dvi__hessian *to);
+
+/* Add T^T M T at point 0 of a group. */
+void dvi__charted_add_mass(const dvi__charted *charted, double *mass);
 
 /* Add the diagonal blocks of slot c. */
 void dvi__charted_add_own_blocks(const dvi__charted *charted, int c, const double *in_qq,
@@ -210,10 +227,9 @@ void dvi__charted_add_own_blocks(const dvi__charted *charted, int c, const doubl
 /* Compute W at the end of the path. */
 void dvi__charted_find_turns(dvi__charted *charted);
 
-/* Compute the change of W N into C_qq and C_qv. The first function clears both. The second adds
- * point k of a group whose tangents are known. The last subtracts L's own Hessian. */
+/* Compute the change of W N into C_qq and C_qv. The first function clears both. Slots and blocks
+ * add theirs to them with the Hessian (charted_hessian.c). The last subtracts L's own Hessian. */
 void dvi__charted_clear_changes(dvi__charted *charted, int count);
-void dvi__charted_add_moment_changes(dvi__charted *charted, int count, int first, int group, int k);
 void dvi__charted_finish_changes(const dvi__charted *charted, int count, const double *L_qq,
                                  const double *L_qv);
 

@@ -291,25 +291,38 @@ static dvi_status sum_gradients(dvi__evaluator *e, int count, const double *t, c
   return DVI_OK;
 }
 
-/* Add the forces of these kinds, times a sign, to the sum of the others, [nv*count]. */
-static dvi_status add_forces(dvi__evaluator *e, unsigned kinds, int count, double sign,
+/* Return the index of the next force of these kinds, from `k` on. */
+static int next_force(const dvi_system *s, unsigned kinds, int k)
+{
+  while (k < s->force_count && !(kinds & dvi__force_kind(&s->forces[k]))) k++;
+  return k;
+}
+
+/* Add the forces of these kinds from `first` on, times a sign, to the sum of the others,
+ * [nv*count]. */
+static dvi_status add_forces(dvi__evaluator *e, unsigned kinds, int first, int count, double sign,
                              const double *t, const double *q, const double *v, double *sum)
 {
   const dvi_system *s = e->system;
-  for (int k = 0; k < s->force_count; k++) {
-    if (!(kinds & dvi__force_kind(&s->forces[k]))) continue;
+  for (int k = next_force(s, kinds, first); k < s->force_count; k = next_force(s, kinds, k + 1)) {
     DVI_TRY(dvi__force_value(&s->forces[k], &e->scratch, count, t, q, v, e->term));
     for (size_t i = 0; i < (size_t)s->nv * (size_t)count; i++) sum[i] += sign * e->term[i];
   }
   return DVI_OK;
 }
 
+/* The first force is evaluated in place. */
 dvi_status dvi__forces(dvi__evaluator *e, unsigned kinds, int count, const double *t,
                        const double *q, const double *v, double *F)
 {
+  const dvi_system *s = e->system;
+  const int first = next_force(s, kinds, 0);
   e->counters->gradients += count;
-  memset(F, 0, (size_t)e->system->nv * (size_t)count * sizeof(double));
-  return add_forces(e, kinds, count, 1, t, q, v, F);
+  if (first < s->force_count)
+    DVI_TRY(dvi__force_value(&s->forces[first], &e->scratch, count, t, q, v, F));
+  else
+    memset(F, 0, (size_t)s->nv * (size_t)count * sizeof(double));
+  return add_forces(e, kinds, first + 1, count, 1, t, q, v, F);
 }
 
 dvi_status dvi__potentials_gradient(dvi__evaluator *e, int count, const double *t, const double *q,
@@ -319,7 +332,7 @@ dvi_status dvi__potentials_gradient(dvi__evaluator *e, int count, const double *
   dvi_status status = sum_gradients(e, count, t, q, V_q);
   /* with factors forces have other numbers than V_q */
   if (status == DVI_OK && e->system->slot_count == 0)
-    status = add_forces(e, DVI__FORCE, count, -1, t, q, NULL, V_q);
+    status = add_forces(e, DVI__FORCE, 0, count, -1, t, q, NULL, V_q);
   dvi__count_differences(e);
   return status;
 }
@@ -391,7 +404,7 @@ dvi_status dvi__lagrangian_gradient(dvi__evaluator *e, int count, const double *
     status = add_vector_gradient(e, count, t, q, v, L_q, L_v);
   /* with factors forces have other numbers than L_q */
   if (status == DVI_OK && L_q != NULL && s->slot_count == 0)
-    status = add_forces(e, DVI__FORCES, count, 1, t, q, v, L_q);
+    status = add_forces(e, DVI__FORCES, 0, count, 1, t, q, v, L_q);
   dvi__count_differences(e);
   return status;
 }
@@ -419,7 +432,8 @@ static void copy_mass_hessian(const dvi_system *s, int count, double *L_vv)
 static void add_embedded(const dvi__pattern *part, const int *where, size_t points, double sign,
                          const double *values, double *whole)
 {
-  for (size_t entry = 0; entry < (size_t)dvi__pattern_entries(part); entry++)
+  const size_t entries = (size_t)dvi__pattern_entries(part);
+  for (size_t entry = 0; entry < entries; entry++)
     for (size_t k = 0; k < points; k++)
       whole[(size_t)where[entry] * points + k] += sign * values[entry * points + k];
 }

@@ -1,5 +1,6 @@
 #include "system/evaluate/untested.h"
 
+#include "core/status.h"
 #include "num/simd/wide.h"
 #include "system/evaluate/evaluator_struct.h"
 
@@ -8,8 +9,8 @@ WIDE static void add_gradient(size_t length, const double *restrict term, double
   for (size_t i = 0; i < length; i++) sum[i] += term[i];
 }
 
-/* What is not the gradient of one potential by its batch callback is compiled apart, so that this
- * costs hardly more than the callback's own work. */
+/* What is not the gradient of one potential by one call is compiled apart, so that this costs
+ * hardly more than the callback's own work. */
 
 __attribute__((noinline)) static dvi_status refuse(const dvi__potential_term *term, int returned)
 {
@@ -27,13 +28,19 @@ __attribute__((noinline)) static dvi_status by_point(dvi__evaluator *e,
   return status;
 }
 
+/* A batch of one point is the point itself. */
 static inline dvi_status evaluate_term(dvi__evaluator *e, const dvi__potential_term *term,
                                        int count, const double *t, const double *q,
                                        double *gradient)
 {
   const dvi_potential *c = &term->callbacks;
-  if (c->gradient_batch == NULL) return by_point(e, term, count, t, q, gradient);
-  const int returned = c->gradient_batch(count, t, q, gradient, c->user);
+  int returned;
+  if (c->gradient_batch != NULL)
+    returned = c->gradient_batch(count, t, q, gradient, c->user);
+  else if (c->gradient != NULL && count == 1)
+    returned = c->gradient(*t, q, gradient, c->user);
+  else
+    return by_point(e, term, count, t, q, gradient);
   return returned == 0 ? DVI_OK : refuse(term, returned);
 }
 
@@ -58,4 +65,28 @@ dvi_status dvi__potentials_gradient_untested(dvi__evaluator *e, int count, const
   e->counters->gradients += count;
   if (s->potential_count > 1) return sum_terms(e, count, t, q, V_q);
   return evaluate_term(e, s->potentials, count, t, q, V_q);
+}
+
+dvi__gradient_callback *dvi__lone_gradient(const dvi__evaluator *e, void **user)
+{
+  const dvi_system *s = e->system;
+  if (s->potential_count != 1 || s->force_count > 0) return NULL;
+  *user = s->potentials[0].callbacks.user;
+  return s->potentials[0].callbacks.gradient_batch;
+}
+
+dvi_status dvi__some_gradients_untested(dvi__evaluator *e, int fast, int count, const double *t,
+                                        const double *q, double *V_q)
+{
+  const dvi_system *s = e->system;
+  int found = 0;
+  if (fast) e->counters->gradients += count;
+  for (int p = 0; p < s->potential_count; p++) {
+    const dvi__potential_term *term = &s->potentials[p];
+    if ((term->callbacks.fast != 0) != fast) continue;
+    DVI_TRY(evaluate_term(e, term, count, t, q, found ? e->term : V_q));
+    if (found) add_gradient((size_t)s->n * (size_t)count, e->term, V_q);
+    found = 1;
+  }
+  return DVI_OK;
 }

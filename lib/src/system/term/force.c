@@ -111,19 +111,24 @@ int dvi__force_has_jacobian(const dvi__force_term *force)
   return force->callbacks.jacobian != NULL || force->callbacks.jacobian_batch != NULL;
 }
 
+/* A batch of one point is the point itself. */
 dvi_status dvi__force_value(const dvi__force_term *f, dvi__scratch *s, int count, const double *t,
                             const double *q, const double *v, double *F)
 {
   const dvi_force *c = &f->callbacks;
   int returned = 0;
   if (c->without_velocity) v = NULL;
-  if (c->value_batch != NULL) returned = c->value_batch(count, t, q, v, F, c->user);
-  for (int k = 0; c->value_batch == NULL && k < count && returned == 0; k++) {
-    dvi__gather_point(s->n, count, k, q, s->point_q);
-    if (v != NULL) dvi__gather_point(s->nv, count, k, v, s->point_v);
-    returned = c->value(t[k], s->point_q, v != NULL ? s->point_v : NULL, s->result[0], c->user);
-    dvi__scatter_result(s->nv, count, k, s->result[0], F);
-  }
+  if (c->value_batch != NULL)
+    returned = c->value_batch(count, t, q, v, F, c->user);
+  else if (count == 1)
+    returned = c->value(*t, q, v, F, c->user);
+  else
+    for (int k = 0; k < count && returned == 0; k++) {
+      dvi__gather_point(s->n, count, k, q, s->point_q);
+      if (v != NULL) dvi__gather_point(s->nv, count, k, v, s->point_v);
+      returned = c->value(t[k], s->point_q, v != NULL ? s->point_v : NULL, s->result[0], c->user);
+      dvi__scatter_result(s->nv, count, k, s->result[0], F);
+    }
   return dvi__verdict(returned, s->nv, count, F, f->name, "value", "");
 }
 
@@ -154,15 +159,16 @@ static dvi_status difference_force(const dvi__force_at *at, int count, double *F
                                  F_v, NULL, NULL);
 }
 
-/* Evaluate the Jacobians by the one-point callback. */
+/* Evaluate the Jacobians by the one-point callback. A batch of one point is the point itself. */
 static int ask_for_jacobians(const dvi__force_term *f, dvi__scratch *s, int count, const double *t,
                              const double *q, const double *v, double *F_q, double *F_v)
 {
   const dvi_force *c = &f->callbacks;
   int returned = 0;
+  if (count == 1) return c->jacobian(*t, q, v, F_q, F_v, c->user);
   for (int k = 0; k < count && returned == 0; k++) {
     dvi__gather_point(s->n, count, k, q, s->point_q);
-    if (v != NULL) dvi__gather_point(s->n, count, k, v, s->point_v);
+    if (v != NULL) dvi__gather_point(s->nv, count, k, v, s->point_v);
     returned = c->jacobian(t[k], s->point_q, v != NULL ? s->point_v : NULL, s->result[0],
                            v != NULL ? s->result[1] : NULL, c->user);
     dvi__scatter_result(dvi__pattern_entries(&f->by_q), count, k, s->result[0], F_q);

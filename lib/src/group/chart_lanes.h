@@ -1,0 +1,67 @@
+/* Numbers at several nodes side by side, and vectors in space of them. */
+#ifndef DVI_GROUP_CHART_LANES_H
+#define DVI_GROUP_CHART_LANES_H
+#include <stddef.h>
+#include <string.h>
+
+#include "num/simd/width.h"
+
+enum { DVI__LANES = 4 };
+typedef double dvi__lane __attribute__((vector_size(DVI__LANES * sizeof(double))));
+
+/* Copy the numbers of some nodes. Steps of degree 2 have two nodes. */
+INLINE void copy_lanes(int some, const void *from, void *to)
+{
+  if (some == DVI__LANES)
+    memcpy(to, from, DVI__LANES * sizeof(double));
+  else if (some == 2)
+    memcpy(to, from, 2 * sizeof(double));
+  else
+    for (int k = 0; k < some; k++)
+      memcpy((double *)to + k, (const double *)from + k, sizeof(double));
+}
+
+/* Copy `rows` rows, which are `stride` apart, of `some` nodes. Lanes without a node are 0. */
+INLINE void load_rows(int rows, const double *from, size_t stride, int some, dvi__lane *x)
+{
+  for (int i = 0; i < rows; i++, from += stride) {
+    x[i] = (dvi__lane){0};
+    copy_lanes(some, from, &x[i]);
+  }
+}
+
+INLINE void store_rows(int rows, const dvi__lane *x, size_t stride, int some, double *to)
+{
+  for (int i = 0; i < rows; i++, to += stride) copy_lanes(some, &x[i], to);
+}
+
+INLINE void lanes_dot(const dvi__lane *a, const dvi__lane *b, dvi__lane *product)
+{
+  *product = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* Compute product = a x b, which may be neither a nor b. */
+INLINE void lanes_cross(const dvi__lane *a, const dvi__lane *b, dvi__lane *product)
+{
+  product[0] = a[1] * b[2] - a[2] * b[1];
+  product[1] = a[2] * b[0] - a[0] * b[2];
+  product[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+/* Compute dexp_{sign xi} v = v + sign c_2 xi x v + c_3 xi x (xi x v), which is not v, and the two
+ * products. */
+INLINE void lanes_dexp(const dvi__lane *c, double sign, const dvi__lane *xi, const dvi__lane *v,
+                       dvi__lane *once, dvi__lane *twice, dvi__lane *sum)
+{
+  lanes_cross(xi, v, once);
+  lanes_cross(xi, once, twice);
+  for (int i = 0; i < 3; i++) sum[i] = v[i] + (sign * c[2] * once[i] + c[3] * twice[i]);
+}
+
+/* Compute R^T v with the same R at all nodes. */
+INLINE void lanes_turn_back(const double *R, const dvi__lane *v, dvi__lane *turned)
+{
+  for (int i = 0; i < 3; i++) turned[i] = R[i] * v[0] + R[3 + i] * v[1] + R[6 + i] * v[2];
+}
+
+#endif

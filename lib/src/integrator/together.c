@@ -1,0 +1,77 @@
+/* Steps that are taken together, with nothing between them, with the bits of single steps. */
+#include <math.h>
+#include <string.h>
+
+#include "core/status.h"
+#include "integrator/hits.h"
+#include "integrator/integrator_struct.h"
+#include "system/evaluate/dynamics.h"
+
+/* Nothing but the method may have a part in these steps. */
+static int can_step_together(const dvi_integrator *I, double h)
+{
+  return I->monitored == NULL && I->balances == 0 && I->system->dynamics->constraint == NULL &&
+         !dvi__hits_divide(I) && !dvi_integrator_chooses_steps(I) &&
+         dvi__check_step(I->now.t, h) == DVI_OK &&
+         dvi__stepper_check_step(&I->stepper, h) == DVI_OK;
+}
+
+enum { TOGETHER = 32 }; /* more steps would hardly save time */
+
+/* Take steps in one pass. They count as one last step. */
+static int steps_in_a_pass(dvi_integrator *I, double h, int steps)
+{
+  double length[TOGETHER];
+  for (int i = 0; i < steps; i++) length[i] = h;
+  I->next.density = I->now.density;
+  I->next.side = I->now.side;
+  if (!I->stepper.method->pass(&I->stepper, &I->now, I->memory_before, &I->next, length, steps) ||
+      !isfinite(I->next.t) || I->next.t + h == I->next.t)
+    return 0;
+  dvi__integrator_accept(I, h * steps);
+  return steps;
+}
+
+/* Take steps one after the other. `last` has been overwritten if they are more than one. */
+static int steps_in_a_march(dvi_integrator *I, double h, int steps)
+{
+  dvi__state_copy(I, &I->now, &I->next);
+  memcpy(I->stepper.memory, I->memory_before, I->stepper.memory_count * sizeof(double));
+  const int taken = I->stepper.method->march(&I->stepper, &I->next, &I->last, h, steps);
+  if (taken == 0) return 0;
+  const dvi__state before = I->last;
+  dvi__integrator_accept(I, h);
+  if (taken == 1) return 1;
+  I->next = I->last;
+  I->last = before;
+  I->last.q_compensation = I->next.q_compensation;
+  I->last.p_compensation = I->next.p_compensation;
+  I->last_h_before = h;
+  return taken;
+}
+
+/* Take steps together. Returns 0 if that is not possible, and the state has not changed. */
+static int steps_together(dvi_integrator *I, double h, int steps)
+{
+  const int marches = I->stepper.marches;
+  if ((!marches && I->stepper.method->pass == NULL) || !can_step_together(I, h)) return 0;
+  dvi__exchange_memory(I);
+  const int taken = marches ? steps_in_a_march(I, h, steps) : steps_in_a_pass(I, h, steps);
+  if (taken == 0) dvi__exchange_memory(I);
+  if (taken > 1) I->counters.steps += taken - 1;
+  return taken;
+}
+
+/* A pass that is not possible once will not be soon. */
+dvi_status dvi__integrator_steps(dvi_integrator *I, double h, long count, long *taken)
+{
+  const int steps = count < TOGETHER ? (int)count : TOGETHER;
+  int tries = 1;
+  for (int i = 0; i < steps; *taken = i) {
+    const int together = tries ? steps_together(I, h, steps - i) : 0;
+    if (together == 0) DVI_TRY(dvi_integrator_step(I, h));
+    i += together > 0 ? together : 1;
+    tries = together > 0 || I->stepper.marches;
+  }
+  return DVI_OK;
+}

@@ -1,0 +1,161 @@
+#include "num/simd/small_inverse.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "num/simd/wide.h"
+#include "num/simd/width.h"
+
+enum { BLOCK = 4, MOST = DVI__SMALL_INVERSE_MOST };
+
+/* Pivots of a matrix near 1 are near 1. */
+static const double least_pivot = 1.0 / 16, largest_pivot = 16;
+
+typedef double block __attribute__((vector_size(BLOCK * sizeof(double)), aligned(8), may_alias));
+
+static void exchange_columns(int n, double *x, double *y)
+{
+  for (int i = 0; i < n; i++) {
+    const double kept = x[i];
+    x[i] = y[i];
+    y[i] = kept;
+  }
+}
+
+int dvi__small_invert(int n, double *A)
+{
+  int from[MOST], sign = 1;
+  for (int k = 0; k < n; k++) {
+    double *column = A + k * n;
+    from[k] = k;
+    for (int j = k + 1; j < n; j++)
+      if (fabs(A[j * n + k]) > fabs(A[from[k] * n + k])) from[k] = j;
+    if (from[k] != k) exchange_columns(n, column, A + from[k] * n);
+    const double pivot = column[k], by = 1 / pivot;
+    if (!(fabs(pivot) > 0)) return 0;
+    if ((from[k] != k) ^ (pivot < 0)) sign = -sign;
+    column[k] = 1;
+    for (int i = 0; i < n; i++) column[i] *= by;
+    for (int j = 0; j < n; j++) {
+      const double factor = A[j * n + k];
+      if (j == k) continue;
+      A[j * n + k] = 0;
+      for (int i = 0; i < n; i++) A[j * n + i] -= factor * column[i];
+    }
+  }
+  for (int k = n - 1; k >= 0; k--)
+    for (int j = 0; j < n && from[k] != k; j++)
+      exchange_columns(1, &A[j * n + k], &A[j * n + from[k]]);
+  return sign;
+}
+
+int dvi__near_one_stride(int n)
+{
+  return (n + BLOCK - 1) / BLOCK * BLOCK;
+}
+
+static const block unit[BLOCK] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
+
+/* Subtract a multiple of a column, and of another one unless it is NULL. */
+INLINE void subtract(const int blocks, const block *x, double factor, const block *other,
+                     double other_factor, block *y)
+{
+  for (int i = 0; i < blocks; i++) {
+    block sum = y[i] - factor * x[i];
+    if (other != NULL) sum -= other_factor * other[i];
+    y[i] = sum;
+  }
+}
+
+/* Divide column k by its pivot, and add the inverse of the pivot there. A multiple of the column
+ * then leaves -factor/pivot of the factor in row k. Returns 0 if the pivot is far from 1. */
+INLINE int divide_column(int k, const int blocks, block *column)
+{
+  const double pivot = ((const double *)column)[k], by = 1 / pivot;
+  if (!(pivot > least_pivot && pivot < largest_pivot)) return 0;
+  for (int i = 0; i < blocks; i++) column[i] *= by;
+  column[k / BLOCK] += by * unit[k % BLOCK];
+  return 1;
+}
+
+/* Leave the inverse of the pivot alone. */
+INLINE void settle_column(int k, block *column)
+{
+  column[k / BLOCK] -= unit[k % BLOCK];
+}
+
+/* Eliminate rows k and k + 1 from all columns, in one pass. */
+INLINE int eliminate_two(int n, int k, const int blocks, double *A)
+{
+  block *one = (block *)(A + k * blocks * BLOCK), *two = one + blocks;
+  if (!divide_column(k, blocks, one)) return 0;
+  subtract(blocks, one, ((const double *)two)[k], NULL, 0, two);
+  if (!divide_column(k + 1, blocks, two)) return 0;
+  const double both = ((const double *)one)[k + 1];
+  for (int j = 0; j < n; j++) {
+    block *y = (block *)(A + j * blocks * BLOCK);
+    const double factor = ((const double *)y)[k];
+    if (j == k || j == k + 1) continue;
+    subtract(blocks, one, factor, two, ((const double *)y)[k + 1] - factor * both, y);
+  }
+  settle_column(k, one);
+  subtract(blocks, two, both, NULL, 0, one);
+  settle_column(k + 1, two);
+  return 1;
+}
+
+INLINE int eliminate_last(int n, const int blocks, double *A)
+{
+  block *last = (block *)(A + (n - 1) * blocks * BLOCK);
+  if (!divide_column(n - 1, blocks, last)) return 0;
+  for (int j = 0; j < n - 1; j++) {
+    block *y = (block *)(A + j * blocks * BLOCK);
+    subtract(blocks, last, ((const double *)y)[n - 1], NULL, 0, y);
+  }
+  settle_column(n - 1, last);
+  return 1;
+}
+
+/* Invert the matrix of columns of `blocks` blocks. */
+INLINE int invert_near_one(int n, const int blocks, double *A)
+{
+  for (int k = 0; k + 1 < n; k += 2)
+    if (!eliminate_two(n, k, blocks, A)) return 0;
+  return n % 2 == 0 || eliminate_last(n, blocks, A);
+}
+
+WIDE static int near_one_invert(int n, double *A)
+{
+  switch (dvi__near_one_stride(n) / BLOCK) {
+  case 1: return invert_near_one(n, 1, A);
+  case 2: return invert_near_one(n, 2, A);
+  case 3: return invert_near_one(n, 3, A);
+  case 4: return invert_near_one(n, 4, A);
+  case 5: return invert_near_one(n, 5, A);
+  case 6: return invert_near_one(n, 6, A);
+  case 7: return invert_near_one(n, 7, A);
+  default: return invert_near_one(n, MOST / BLOCK, A);
+  }
+}
+
+int dvi__near_one_invert(int n, double *A)
+{
+  return near_one_invert(n, A);
+}
+
+WIDE static void near_one_times(int n, const double *inverse, double *x)
+{
+  const int stride = dvi__near_one_stride(n);
+  double y[MOST];
+  for (int at = 0; at < stride; at += BLOCK) {
+    block sum = {0};
+    for (int k = 0; k < n; k++) sum += x[k] * *(const block *)(inverse + k * stride + at);
+    memcpy(y + at, &sum, sizeof sum);
+  }
+  memcpy(x, y, (size_t)n * sizeof *x);
+}
+
+void dvi__near_one_times(int n, const double *inverse, double *x)
+{
+  near_one_times(n, inverse, x);
+}

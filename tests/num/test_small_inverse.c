@@ -1,0 +1,90 @@
+/* Inverses of small full matrices: products, signs of determinants, singular matrices. */
+#include <math.h>
+
+#include "num/simd/small_inverse.h"
+#include "support/suite.h"
+
+enum { MOST = DVI__SMALL_INVERSE_MOST };
+
+/* Fill A [stride*n] with numbers below `size`, and add `diagonal`. */
+static void fill_matrix(int n, int stride, double size, double diagonal, double *A)
+{
+  unsigned state = 1 + (unsigned)n;
+  for (int j = 0; j < n; j++)
+    for (int i = 0; i < n; i++) {
+      state = state * 1103515245u + 12345u;
+      A[j * stride + i] = size * ((state >> 16) % 1000 / 500.0 - 1) + (i == j ? diagonal : 0);
+    }
+}
+
+/* The largest entry of A B - 1. */
+static double defect_of_product(int n, const double *A, const double *B, int stride)
+{
+  double worst = 0;
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < n; j++) {
+      double sum = i == j ? -1 : 0;
+      for (int k = 0; k < n; k++) sum += A[k * stride + i] * B[j * stride + k];
+      worst = fmax(worst, fabs(sum));
+    }
+  return worst;
+}
+
+START_TEST(a_matrix_times_its_inverse_is_one)
+{
+  const int n = _i;
+  double A[MOST * MOST], inverse[MOST * MOST];
+  fill_matrix(n, n, 1, 0, A);
+  fill_matrix(n, n, 1, 0, inverse);
+  ck_assert_int_ne(dvi__small_invert(n, inverse), 0);
+  ck_assert_double_le(defect_of_product(n, A, inverse, n), 1e-10);
+}
+END_TEST
+
+START_TEST(near_one_there_is_no_exchange)
+{
+  const int n = _i, stride = dvi__near_one_stride(n);
+  static double A[MOST * MOST], inverse[MOST * MOST];
+  double x[MOST], worst = 0;
+  fill_matrix(n, stride, 0.2 / n, 1, A);
+  fill_matrix(n, stride, 0.2 / n, 1, inverse);
+  ck_assert_int_eq(dvi__near_one_invert(n, inverse), 1);
+  ck_assert_double_le(defect_of_product(n, A, inverse, stride), 1e-14);
+  for (int i = 0; i < n; i++) x[i] = A[i];
+  dvi__near_one_times(n, inverse, x);
+  for (int i = 0; i < n; i++) worst = fmax(worst, fabs(x[i] - (i == 0)));
+  ck_assert_double_le(worst, 1e-14);
+}
+END_TEST
+
+START_TEST(the_sign_is_that_of_the_determinant)
+{
+  double turn[] = {0, 1, -1, 0}, swap[] = {0, 1, 1, 0}, negative[] = {-2, 0, 0, 3},
+         singular[] = {1, 2, 2, 4}, not_a_number[] = {NAN, 1, 1, 1};
+  ck_assert_int_eq(dvi__small_invert(2, turn), 1);
+  ck_assert_int_eq(dvi__small_invert(2, swap), -1);
+  ck_assert_int_eq(dvi__small_invert(2, negative), -1);
+  ck_assert_int_eq(dvi__small_invert(2, singular), 0);
+  ck_assert_int_eq(dvi__small_invert(2, not_a_number), 0);
+  ck_assert_double_eq(turn[1], -1);
+  ck_assert_double_eq(negative[0], -0.5);
+}
+END_TEST
+
+START_TEST(matrices_far_from_one_are_refused)
+{
+  double small[] = {0.01, 0, 0, 0, 0, 1, 0, 0}, large[] = {1, 0, 0, 0, 0, 100, 0, 0},
+         none[] = {1, 0, 0, 0, 0, NAN, 0, 0};
+  ck_assert_int_eq(dvi__near_one_invert(2, small), 0);
+  ck_assert_int_eq(dvi__near_one_invert(2, large), 0);
+  ck_assert_int_eq(dvi__near_one_invert(2, none), 0);
+}
+END_TEST
+
+SUITE(small_inverse)
+{
+  tcase_add_loop_test(tests, a_matrix_times_its_inverse_is_one, 1, MOST + 1);
+  tcase_add_loop_test(tests, near_one_there_is_no_exchange, 1, MOST + 1);
+  tcase_add_test(tests, the_sign_is_that_of_the_determinant);
+  tcase_add_test(tests, matrices_far_from_one_are_refused);
+}
