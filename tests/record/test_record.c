@@ -80,8 +80,8 @@ END_TEST
 START_TEST(measured_parts_are_those_of_the_integrator)
 {
   const dvi_run_options run = {.h = 0.125, .t_end = 1};
-  const dvi_record_options options =
-      parts(DVI_RECORD_V | DVI_RECORD_INVARIANTS | DVI_RECORD_STEP | DVI_RECORD_P);
+  const dvi_record_options options = parts(DVI_RECORD_V | DVI_RECORD_INVARIANTS | DVI_RECORD_STEP |
+                                           DVI_RECORD_P);
   ck_assert_int_eq(dvi_record(runner, &run, &options, &recording), DVI_OK);
   for (int step = 0; step <= 8; step++) {
     double invariant[8];

@@ -28,10 +28,10 @@
 #include <dvi/number.h>
 #include <dvi/path.h>
 #include <dvi/quadrature.h>
+#include <dvi/record.h>
 #include <dvi/reference.h>
 #include <dvi/regge.h>
 #include <dvi/rotations.h>
-#include <dvi/record.h>
 #include <dvi/run.h>
 #include <dvi/schroedinger.h>
 #include <dvi/sensitivity.h>

@@ -39,7 +39,7 @@ typedef struct dvi_record_options {
 /** An event that was found in a recorded run. */
 typedef struct dvi_recorded_event {
   double t;
-  int event;          /**< its index in the options of the run */
+  int event;           /**< its index in the options of the run */
   const double *q, *v; /**< [nq], [nv] the point of the path at t */
 } dvi_recorded_event;
 

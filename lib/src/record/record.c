@@ -200,8 +200,8 @@ static dvi_status check_times(const record *r)
   const int64_t count = r->options.time_count;
   const double *t = r->options.times, forward = r->run->h > 0 ? 1 : -1;
   if (count < 0 || (count > 0) != (t != NULL))
-    return dvi__fail(DVI_BAD_ARGUMENT, "record: %lld times, and their list is %s",
-                     (long long)count, t != NULL ? "given" : "NULL");
+    return dvi__fail(DVI_BAD_ARGUMENT, "record: %lld times, and their list is %s", (long long)count,
+                     t != NULL ? "given" : "NULL");
   for (int64_t k = 0; k < count; k++) {
     const double before = k > 0 ? t[k - 1] : dvi_integrator_time(r->integrator);
     if (!isfinite(t[k]) || forward * (t[k] - before) < 0 || forward * (r->run->t_end - t[k]) < 0)

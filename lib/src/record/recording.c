@@ -87,8 +87,8 @@ dvi_status dvi__recording_add_event(dvi_recording *r, int event, double t, const
   double *point = r->event_point + r->events * (r->nq + r->nv);
   memcpy(point, q, (size_t)r->nq * sizeof *q);
   memcpy(point + r->nq, v, (size_t)r->nv * sizeof *v);
-  r->event[r->events++] =
-      (dvi_recorded_event){.t = t, .event = event, .q = point, .v = point + r->nq};
+  r->event[r->events++] = (dvi_recorded_event){
+      .t = t, .event = event, .q = point, .v = point + r->nq};
   return DVI_OK;
 }
 
@@ -127,7 +127,10 @@ double *dvi__recording_row(const dvi_recording *r, dvi_record_part part)
   return rows->number != NULL ? rows->number + r->rows * rows->width : NULL;
 }
 
-int64_t dvi_recording_rows(const dvi_recording *r) { return r != NULL ? r->rows : 0; }
+int64_t dvi_recording_rows(const dvi_recording *r)
+{
+  return r != NULL ? r->rows : 0;
+}
 
 const double *dvi_recording_part(const dvi_recording *r, dvi_record_part part, int *width)
 {
