@@ -7,7 +7,8 @@
 #include "solve/nonlinear.h"
 
 /* Test a solution. x stays, and NULL stands for the equations' own variables after fixed-point
- * iteration. DVI_NOT_CONVERGED: the solution does not pass, and the KINSOL rung should take over. */
+ * iteration. DVI_NOT_CONVERGED: the solution does not pass, and the KINSOL rung should take
+ * over. */
 dvi_status dvi__certify(dvi__solver *solver, double size, const double *x,
                         dvi__solve_report *report);
 

@@ -225,9 +225,6 @@ void dvi__preconditioner_begin_members(struct dvi__action_members *members);
 void dvi__preconditioner_iterate_members(struct dvi__action_members *members);
 void dvi__preconditioner_other_forces_of_members(struct dvi__action_members *members);
 
-/* Set the arguments of the loops of fixed-point iteration at the element's place. */
-dvi__fixed_point *dvi__action_place_iteration(dvi__action *action);
-
 /* Give the table by which forces move the nodes (lagged.h). */
 dvi__place_table dvi__action_place_table(const dvi__action *action);
 
