@@ -62,16 +62,15 @@ static int steps_together(dvi_integrator *I, double h, int steps)
   return taken;
 }
 
-/* A pass that is not possible once will not be soon. */
+/* Between the steps of a march single ones are taken where it stops. */
 dvi_status dvi__integrator_steps(dvi_integrator *I, double h, long count, long *taken)
 {
   const int steps = count < TOGETHER ? (int)count : TOGETHER;
-  int tries = 1;
   for (int i = 0; i < steps; *taken = i) {
-    const int together = tries ? steps_together(I, h, steps - i) : 0;
+    const int together = steps_together(I, h, steps - i);
+    if (together == 0 && !I->stepper.marches) return DVI_OK;
     if (together == 0) DVI_TRY(dvi_integrator_step(I, h));
     i += together > 0 ? together : 1;
-    tries = together > 0 || I->stepper.marches;
   }
   return DVI_OK;
 }

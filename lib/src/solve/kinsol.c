@@ -167,7 +167,7 @@ static int kinsol_configure(dvi__kinsol *k)
          KINSetMaxNewtonStep(m, 1e3) == 0 && KINSetNumMaxIters(m, 100) == 0;
 }
 
-dvi_status dvi__kinsol_create(dvi__solver *solver, int own, dvi__kinsol **kinsol)
+static dvi_status kinsol_create(dvi__solver *solver, int own, dvi__kinsol **kinsol)
 {
   dvi__kinsol *k = *kinsol = DVI_NEW(dvi__kinsol, 1);
   if (k == NULL) return dvi__fail(DVI_NO_MEMORY, "KINSOL: no memory");
@@ -184,6 +184,14 @@ dvi_status dvi__kinsol_create(dvi__solver *solver, int own, dvi__kinsol **kinsol
   /* Only memory can be missing, because all arguments are valid. */
   return dvi__fail(DVI_NO_MEMORY, "KINSOL: no memory for %d unknowns",
                    own ? own * solver->equations.own_unknowns : solver->equations.unknowns);
+}
+
+dvi_status dvi__kinsol_prepare(dvi__solver *s, int own, dvi__kinsol **kinsol)
+{
+  if (*kinsol != NULL) return DVI_OK;
+  DVI_TRY(kinsol_create(s, own, kinsol));
+  s->counters->preparations++;
+  return DVI_OK;
 }
 
 void dvi__kinsol_destroy(dvi__kinsol **kinsol)

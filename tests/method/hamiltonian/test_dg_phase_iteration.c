@@ -18,11 +18,23 @@ START_TEST(short_steps_take_one_set_of_second_derivatives_and_no_jacobian)
   dvi_integrator_counters(step, &before);
   advance(step, 0.1, STEPS);
   dvi_integrator_counters(step, &after);
-  ck_assert_int_eq(after.fixed_points, STEPS + FIRST);
-  ck_assert_int_eq(after.newtons + after.jacobians + after.followed, 0);
+  ck_assert_int_eq(after.simplified, STEPS + FIRST);
+  ck_assert_int_eq(after.fixed_points + after.newtons + after.jacobians + after.followed, 0);
   ck_assert_int_le(after.hessians - before.hessians, (2 * degree + 1) * (STEPS + 5 * FIRST));
   ck_assert_int_ge(after.hessians - before.hessians, points * (STEPS + FIRST));
   ck_assert_int_le(after.residuals, 7L * STEPS);
+  dvi_integrator_destroy(&step);
+  problem_destroy(&model);
+}
+END_TEST
+
+START_TEST(the_explanation_names_both_methods)
+{
+  char text[4096];
+  problem *model = create_problem("circle-dirac", NULL);
+  dvi_integrator *step = start_integrator(model, "dg-phase:degree=4");
+  ck_assert_uint_lt(dvi_integrator_explain(step, text, sizeof text), sizeof text);
+  ck_assert_ptr_nonnull(strstr(text, "solver: simplified Newton's method, Newton's method, last"));
   dvi_integrator_destroy(&step);
   problem_destroy(&model);
 }
@@ -46,5 +58,6 @@ END_TEST
 SUITE(dg_phase_iteration)
 {
   tcase_add_loop_test(tests, short_steps_take_one_set_of_second_derivatives_and_no_jacobian, 0, 6);
+  tcase_add_test(tests, the_explanation_names_both_methods);
   tcase_add_test(tests, long_steps_take_newtons_method);
 }

@@ -1,4 +1,4 @@
-/* Fixed point iteration. With as many points as degrees the equations of a step are those of a
+/* Fixed-point iteration. With as many points as degrees the equations of a step are those of a
  * partitioned Runge-Kutta method,
  *
  *     Q_i = q0 + h sum_j a_ij H_p_j,           a_ij the coefficients of collocation,
@@ -85,11 +85,6 @@ int dvi__canonical_has_iteration(const dvi__canonical *c)
 }
 
 /* ---- iterate ---- */
-
-static inline double larger(double x, double y)
-{
-  return x > y ? x : y;
-}
 
 /* Move a block of points. */
 INLINE void move_block(double h, const block *sum, const block *start, const block *scale,

@@ -5,7 +5,7 @@
 #include "step/joint.h"
 #include "space/basis.h"
 
-/* Fixed point iteration of a step with as many points as degrees. Rows of numbers at the points are
+/* Fixed-point iteration of a step with as many points as degrees. Rows of numbers at the points are
  * padded to `lanes` in the tables, whose columns stand one after the other. */
 typedef struct dvi__canonical_iteration {
   int lanes;

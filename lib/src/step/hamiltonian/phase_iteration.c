@@ -178,11 +178,6 @@ void dvi__phase_element_finish(const dvi__phase_element *f, double *x)
   memcpy(x, own->multipliers, (size_t)(f->m * (f->k + 1)) * sizeof *x);
 }
 
-static inline double larger(double x, double y)
-{
-  return x > y ? x : y;
-}
-
 /* The largest correction, unknown and coordinate of one kind, q or p. */
 typedef struct measure {
   largest is;

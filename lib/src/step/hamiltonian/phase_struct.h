@@ -33,7 +33,7 @@ typedef struct dvi__phase_iteration {
   double *slope;                      /* [entries][lanes] */
   double *end_gradient, *end_field;   /* [m][2n] */
   double *end_slope;                  /* [entries] */
-  double *base, *there, *change;      /* [2n][lanes] */
+  double *base, *there;               /* [2n][lanes] */
   int entries, *entry, *row, *column; /* entries of joint for two components of z */
   double *moments, *end;              /* [m*k][m*k] and [m][m], inverses by rows */
   double *multiplier;                 /* [m*(1+k)] */
