@@ -2,23 +2,25 @@
 #ifndef DVI_GROUP_CHART_LANES_H
 #define DVI_GROUP_CHART_LANES_H
 #include <stddef.h>
-#include <string.h>
 
 #include "num/simd/width.h"
 
 enum { DVI__LANES = 4 };
 typedef double dvi__lane __attribute__((vector_size(DVI__LANES * sizeof(double))));
 
-/* Copy `rows` rows, which are `stride` apart, of `some` nodes. Lanes without a node are 0. Steps of
- * degree 2 have two nodes. Vectors that are written in parts by memcpy would go by way of memory,
- * and wait there. */
+/* Lanes among other numbers. memcpy would copy them by halves through memory, and the first sum of
+ * them would wait there. */
+typedef double dvi__lane_at
+    __attribute__((vector_size(DVI__LANES * sizeof(double)), aligned(sizeof(double)), may_alias));
+
+/* Copy `rows` rows, which are `stride` apart, of `some` nodes. Lanes without a node are 0. */
 INLINE void load_rows(int rows, const double *from, size_t stride, int some, dvi__lane *x)
 {
   for (int i = 0; i < rows; i++, from += stride) {
+    x[i] = (dvi__lane){0};
     if (some == DVI__LANES) {
-      memcpy(&x[i], from, sizeof *x);
+      x[i] = *(const dvi__lane_at *)from;
     } else {
-      x[i] = (dvi__lane){0};
       x[i][0] = from[0];
       if (some > 1) x[i][1] = from[1];
       if (some > 2) x[i][2] = from[2];
@@ -28,14 +30,12 @@ INLINE void load_rows(int rows, const double *from, size_t stride, int some, dvi
 
 INLINE void store_rows(int rows, const dvi__lane *x, size_t stride, int some, double *to)
 {
-  for (int i = 0; i < rows; i++, to += stride)
-    if (some == DVI__LANES) {
-      memcpy(to, &x[i], sizeof *x);
-    } else {
-      to[0] = x[i][0];
-      if (some > 1) to[1] = x[i][1];
-      if (some > 2) to[2] = x[i][2];
-    }
+  for (int i = 0; i < rows; i++, to += stride) {
+    to[0] = x[i][0];
+    if (some > 1) to[1] = x[i][1];
+    if (some > 2) to[2] = x[i][2];
+    if (some > 3) to[3] = x[i][3];
+  }
 }
 
 INLINE void lanes_dot(const dvi__lane *a, const dvi__lane *b, dvi__lane *product)

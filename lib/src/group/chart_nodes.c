@@ -74,19 +74,21 @@ INLINE void place_lanes(const dvi__chart *chart, dvi__chart_kind kind, const lan
   }
 }
 
-/* Compute Stumpff's functions of |xi|^2. Returns the first |xi| beyond the bound, else 0. */
-INLINE double find_functions(dvi__chart_kind kind, int size, const lane *xi, int some, lane *c)
+/* Returns the first |xi| that is not below the bound, else 0. */
+INLINE double beyond_bound(dvi__chart_kind kind, const lane *square, int some)
 {
   const double bound = dvi__chart_bound(kind);
-  lane square = xi[0] * xi[0];
-  for (int i = 1; i < size; i++) square += xi[i] * xi[i];
-  double s[DVI__LANES], functions[DVI__NODE_FUNCTIONS][DVI__LANES];
   for (int k = 0; k < some; k++)
-    if (!(square[k] < bound * bound)) return sqrt(square[k]);
-  memcpy(s, &square, sizeof s);
-  dvi__stumpff_six_of(s, functions);
-  for (int i = 0; i < DVI__NODE_FUNCTIONS; i++) memcpy(&c[i], functions[i], sizeof c[i]);
+    if (!((*square)[k] < bound * bound)) return sqrt((*square)[k]);
   return 0;
+}
+
+INLINE void find_functions(const lane *square, lane *c)
+{
+  double s[DVI__LANES], functions[DVI__NODE_FUNCTIONS][DVI__LANES];
+  store_rows(1, square, 0, DVI__LANES, s);
+  dvi__stumpff_six_of(s, functions);
+  load_rows(DVI__NODE_FUNCTIONS, functions[0], DVI__LANES, DVI__LANES, c);
 }
 
 /* The kind and the usual numbers of nodes are constants, so that all vectors are in registers. */
@@ -99,8 +101,11 @@ INLINE double place_some(const dvi__chart *chart, dvi__chart_kind kind, const dv
   load_rows(size, n->xi + k, n->local, some, xi);
   load_rows(size, n->rate + k, n->local, some, rate);
   if (kind != DVI__LINE) {
-    const double beyond = find_functions(kind, size, xi, some, c);
+    lane square = xi[0] * xi[0];
+    for (int i = 1; i < size; i++) square += xi[i] * xi[i];
+    const double beyond = beyond_bound(kind, &square, some);
     if (beyond != 0) return beyond;
+    find_functions(&square, c);
     store_rows(DVI__NODE_FUNCTIONS, c, count, some, n->functions + k);
   }
   place_lanes(chart, kind, c, xi, rate, y, v);
