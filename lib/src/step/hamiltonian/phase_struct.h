@@ -13,7 +13,7 @@ typedef struct dvi__vector_field_places {
 } dvi__vector_field_places;
 
 /* Largest number of rows of a matrix in the iteration. */
-enum { DVI__PHASE_ROWS_MOST = 16 };
+enum { DVI__PHASE_ROWS_MOST = 16, DVI__PHASE_COORDINATES_MOST = 16 };
 
 /* Numbers of the iteration (phase_iteration.c). Rows of numbers at the stages have `lanes` numbers,
  * of which those behind the stages are 0. Matrices are those of the guess. */
