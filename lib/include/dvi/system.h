@@ -199,7 +199,9 @@ typedef struct dvi_potential {
    *  unless the system is autonomous. */
   int (*rate)(double t, const double *q, double *V_t, void *user);
   int (*rate_batch)(int count, const double *t, const double *q, double *V_t, void *user);
-  /** not 0 if the forces are stiff. Splitting methods treat them apart (docs/methods/imex.md) */
+  /** not 0 if the forces are stiff, or exceed those of other potentials by far. Splitting methods
+   *  treat them apart (docs/methods/imex.md). Fixed-point iteration evaluates the other potentials
+   *  less often, with the same solutions but for their last digits (docs/methods/galerkin.md) */
   int fast;
   /** not 0 if V = q.Kq/2 + b(t).q + c(t) with a constant K. dvi_system_check tests this */
   int quadratic;
