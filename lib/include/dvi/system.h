@@ -330,8 +330,7 @@ typedef enum dvi_factor_kind {
   /** rigid motions, the nine entries of R, then the position x of the body's origin. v = (Omega,
    *  x'), with x' in the frame of space */
   DVI_SE3,
-  /** directions, a unit vector q. v = q' and its momentum p are three numbers, too, orthogonal to
-   *  q */
+  /** directions, a unit vector q. v = q' and its momentum p are three numbers, orthogonal to q */
   DVI_S2,
   DVI_U1 /**< angles, (cos, sin). v is the angular rate */
 } dvi_factor_kind;
@@ -384,8 +383,7 @@ typedef struct dvi_invariant {
  *  all kinds but a Hamiltonian. Forces and constraints may stand beside a mass and beside a general
  *  Lagrangian, but beside factors no nonholonomic ones. Contacts, noise: dvi/contact.h, noise.h. */
 typedef struct dvi_system_terms {
-  /** number of coordinates n, at least 1, even with a one-form. 0 with factors, which determine
-   *  n */
+  /** number n of coordinates, at least 1, even with a one-form. 0 with factors, which tell it */
   int dimension;
   dvi_mass mass;                    /**< a constant mass */
   const dvi_lagrangian *lagrangian; /**< a general Lagrangian */
