@@ -9,26 +9,33 @@
 enum { DVI__LANES = 4 };
 typedef double dvi__lane __attribute__((vector_size(DVI__LANES * sizeof(double))));
 
-/* Copy `rows` rows, which are `stride` apart, of `some` nodes. Lanes without a node are 0. */
+/* Copy `rows` rows, which are `stride` apart, of `some` nodes. Lanes without a node are 0. Steps of
+ * degree 2 have two nodes. Vectors that are written in parts by memcpy would go by way of memory,
+ * and wait there. */
 INLINE void load_rows(int rows, const double *from, size_t stride, int some, dvi__lane *x)
 {
   for (int i = 0; i < rows; i++, from += stride) {
-    x[i] = (dvi__lane){0};
-    if (some == DVI__LANES)
+    if (some == DVI__LANES) {
       memcpy(&x[i], from, sizeof *x);
-    else
-      for (int k = 0; k < some; k++) x[i][k] = from[k];
+    } else {
+      x[i] = (dvi__lane){0};
+      x[i][0] = from[0];
+      if (some > 1) x[i][1] = from[1];
+      if (some > 2) x[i][2] = from[2];
+    }
   }
 }
 
 INLINE void store_rows(int rows, const dvi__lane *x, size_t stride, int some, double *to)
 {
-  for (int i = 0; i < rows; i++, to += stride) {
-    if (some == DVI__LANES)
+  for (int i = 0; i < rows; i++, to += stride)
+    if (some == DVI__LANES) {
       memcpy(to, &x[i], sizeof *x);
-    else
-      for (int k = 0; k < some; k++) to[k] = x[i][k];
-  }
+    } else {
+      to[0] = x[i][0];
+      if (some > 1) to[1] = x[i][1];
+      if (some > 2) to[2] = x[i][2];
+    }
 }
 
 INLINE void lanes_dot(const dvi__lane *a, const dvi__lane *b, dvi__lane *product)

@@ -154,7 +154,7 @@ WIDE static void six_near(const double *s, double *functions)
   sum_series_of(5, 5, &x, &c[5]);
   sum_series_of(4, 5, &x, &c[4]);
   for (int k = 3; k >= 0; k--) c[k] = inverse_factorial[k] - x * c[k + 2];
-  memcpy(functions, c, sizeof c);
+  for (int k = 0; k < 6; k++) memcpy(functions + DVI__STUMPFF_LANES * k, &c[k], sizeof c[k]);
 }
 
 void dvi__stumpff_six_of(const double s[DVI__STUMPFF_LANES], double c[6][DVI__STUMPFF_LANES])
