@@ -203,9 +203,9 @@ dvi_status dvi__friction_start(dvi__friction *f, const dvi__state *state, double
   return evaluate_force(f, state, &at);
 }
 
-/* Tell whether the kick by the forces is no larger than any momentum without it. Two velocities that
- * solve the equation differ by their forces' kicks. One far from M^-1 p, near which that of short
- * steps is, has a large kick. */
+/* Tell whether the kick by the forces is no larger than any momentum without it. Two velocities
+ * that solve the equation differ by their forces' kicks. One far from M^-1 p, near which that of
+ * short steps is, has a large kick. */
 static int is_gentle(const dvi__friction *f, double h, const double *F)
 {
   for (int i = 0; i < f->system->n; i++)
