@@ -157,7 +157,7 @@ INLINE void add_row(int columns, const dvi__block_entry *entry, const lane *valu
                     const double *right, lane *P)
 {
   for (int b = 0; b < columns; b++) {
-    const size_t at = (size_t)((entry->column * columns + b) * DVI__GROUP);
+    const ptrdiff_t at = (ptrdiff_t)(entry->column * columns + b) * DVI__GROUP;
     P[3 * entry->row + b] += *value * *(const dvi__lane_at *)(right + at);
   }
 }
