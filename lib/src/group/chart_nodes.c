@@ -334,7 +334,7 @@ INLINE void differentiate_some(const dvi__chart *chart, dvi__chart_kind kind, in
 {
   const int size = dvi__chart_size(kind), stored = dvi__chart_stored(kind);
   const size_t count = (size_t)n->count;
-  lane xi[3], rate[3], c[DVI__NODE_FUNCTIONS], y[9], v[9], a[9], b[9], in_xi[3], in_rate[3];
+  lane xi[3], rate[3], c[DVI__NODE_FUNCTIONS], y[9], a[9], in_xi[3], in_rate[3];
   load_rows(size, n->xi + k, n->local, some, xi);
   load_rows(size, n->rate + k, n->local, some, rate);
   if (kind != DVI__LINE) load_rows(DVI__NODE_FUNCTIONS, n->functions + k, count, some, c);
@@ -343,6 +343,7 @@ INLINE void differentiate_some(const dvi__chart *chart, dvi__chart_kind kind, in
   if (even) {
     move_lanes(chart, kind, inertia, c, xi, rate, y, a, in_xi, in_rate);
   } else {
+    lane v[9], b[9];
     load_rows(stored, n->b + k, count, some, b);
     if (kind == DVI__ROTATION) load_rows(stored, n->v + k, count, some, v);
     differentiate_lanes(chart, kind, c, xi, rate, y, v, a, b, in_xi, in_rate);

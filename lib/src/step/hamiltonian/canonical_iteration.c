@@ -27,10 +27,10 @@ static dvi_status fill_path(const dvi__canonical *c, double *path)
 {
   const int s = c->s, stride = dvi__small_lu_stride(s);
   double upper[MOST * MOST] = {0}, lower[MOST * MOST] = {0}, diagonal[MOST];
-  int pivot[MOST];
+  int pivot[MOST] = {0};
   const dvi__small_lu slope = {s, stride, upper, lower, diagonal, pivot};
   for (int j = 0; j < s; j++)
-    for (int k = 0; k < s; k++) upper[k * stride + j] = c->slope[j][k];
+    for (int k = 0; k < s; k++) slope.upper[k * stride + j] = c->slope[j][k];
   if (!(dvi__small_lu_factor(&slope) > 0))
     return dvi__fail(DVI_SINGULAR, "the points of a step do not determine its path");
   for (int j = 0; j < s; j++) {

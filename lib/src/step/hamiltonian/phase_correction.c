@@ -177,7 +177,7 @@ static void correct_end(const dvi__phase_element *f)
     }
   }
   for (int c = 0; c < z; c++) own.of_D[c] = D[c];
-  for (int a = 0; a < m; a++) own.of_end[a] = own.multiplier[a];
+  memcpy(own.of_end, own.multiplier, (size_t)m * sizeof(double));
 }
 
 void dvi__phase_correct(dvi__phase_element *f)

@@ -84,10 +84,11 @@ void dvi__lagged_begin(dvi__lagged *l, int width, double ratio, const double *fa
 {
   const double scale = ratio * ratio;
   l->width = (size_t)width;
-  for (size_t k = 0; k < l->width; k++)
-    l->lag[k] = factors == NULL
-                    ? (lag){0}
-                    : (lag){.fast = scale * factors[k], .slow = scale * factors[l->width + k]};
+  memset(l->lag, 0, l->width * sizeof *l->lag);
+  for (size_t k = 0; k < l->width && factors != NULL; k++) {
+    l->lag[k].fast = scale * factors[k];
+    l->lag[k].slow = scale * factors[l->width + k];
+  }
 }
 
 void dvi__lagged_renew(dvi__lagged *l)
