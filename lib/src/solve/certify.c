@@ -25,8 +25,7 @@ double *dvi__certify_point(dvi__solver *s, int i)
 
 dvi_status dvi__certify_note(dvi__solver *s, int i, const double *next, double whole, double size)
 {
-  if (whole == 0) whole = size > 0 ? size : 1;
-  return dvi__kinsol_note(s->many, i, next, whole);
+  return dvi__kinsol_note(s->many, i, next, whole, size);
 }
 
 int dvi__certify_noted(dvi__solver *s, int count)
@@ -41,10 +40,10 @@ int dvi__certify_noted(dvi__solver *s, int count)
 /* Test the residual that the last iteration showed. */
 static int certify_last(dvi__solver *s, double size)
 {
-  const double whole = s->whole != 0 ? s->whole : size > 0 ? size : 1;
   if (!s->has_point) return 0;
   s->has_point = 0; /* a test uses its place */
-  return dvi__kinsol_note(s->tester, 0, s->equations.own_point(s->equations.of), whole) == DVI_OK &&
+  return dvi__kinsol_note(s->tester, 0, s->equations.own_point(s->equations.of), s->whole, size) ==
+             DVI_OK &&
          dvi__kinsol_certify_known(s->tester, 1);
 }
 

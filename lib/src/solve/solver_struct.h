@@ -74,7 +74,8 @@ dvi_status dvi__kinsol_certify(dvi__kinsol *kinsol, double size, const double *x
                                dvi__solve_report *report);
 /* Certify solutions in own variables by residuals that are known (certify.h). */
 double *dvi__kinsol_point(dvi__kinsol *kinsol, int i);
-dvi_status dvi__kinsol_note(dvi__kinsol *kinsol, int i, const double *next, double whole);
+dvi_status dvi__kinsol_note(dvi__kinsol *kinsol, int i, const double *next, double whole,
+                            double size);
 int dvi__kinsol_certify_known(dvi__kinsol *kinsol, int count);
 dvi_status dvi__kinsol_solve(dvi__kinsol *kinsol, double size, double *x,
                              dvi__solve_report *report);

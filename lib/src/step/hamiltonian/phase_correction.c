@@ -128,6 +128,7 @@ INLINE void correct_stages(const dvi__phase_element *f, const dvi__phase_iterati
   const int z = 2 * f->n, k = f->k, count = f->m * k;
   for (int sweep = 0; sweep <= SWEEPS; sweep++) {
     if (sweep > 0) set_base(own, z, lanes);
+    if (k == 0 && sweep == SWEEPS) break;
     const double *base = sweep > 0 ? own->base : own->of_W;
     for (int c = 0; c < z; c++)
       row_product(f->d, lanes, own->a, base + c * lanes, own->there + c * lanes);
