@@ -1,5 +1,5 @@
-# Checks which room includes which, and which calls the library leaves to others. Prints every
-# breach, and exits with 1 if there is one.
+# Checks which room includes which, which calls the library leaves to others, and that functions of
+# several versions have names of their own. Prints every breach, and exits with 1 if there is one.
 # Usage: awk -f layers.awk [-v methods="a b"] FILE...
 # Paths are relative to the top of the tree.
 
@@ -194,6 +194,16 @@ FNR == 1 {
   if (zone == "library") check_library(quoted, header)
   if (zone == "public") check_public(quoted, header)
   if (zone == "user") check_user(quoted, header)
+}
+
+# The choice between the versions of a function (num/simd/wide.h) is a global name with clang.
+zone == "library" && /^(WIDE|FUSED) static .*\(/ {
+  name = $0
+  sub(/\(.*/, "", name)
+  sub(/.*[ *]/, "", name)
+  if (name in versions)
+    breach("clang cannot link this beside " name " of " versions[name] ": give it another name")
+  versions[name] = FILENAME
 }
 
 # Text in quotes is left out, because the library writes C, too.

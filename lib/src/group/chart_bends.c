@@ -7,6 +7,8 @@
  *     T_j = R A_j^,     S_j = R (A_j^ Omega^ + (dOmega/dxi_j)^) */
 #include "group/chart_bends.h"
 
+#include <string.h>
+
 #include "group/chart_lanes.h"
 #include "group/stumpff.h"
 #include "num/simd/wide.h"

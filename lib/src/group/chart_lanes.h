@@ -2,37 +2,40 @@
 #ifndef DVI_GROUP_CHART_LANES_H
 #define DVI_GROUP_CHART_LANES_H
 #include <stddef.h>
-#include <string.h>
 
 #include "num/simd/width.h"
 
 enum { DVI__LANES = 4 };
 typedef double dvi__lane __attribute__((vector_size(DVI__LANES * sizeof(double))));
 
-/* Copy the numbers of some nodes. Steps of degree 2 have two nodes. */
-INLINE void copy_lanes(int some, const void *from, void *to)
-{
-  if (some == DVI__LANES)
-    memcpy(to, from, DVI__LANES * sizeof(double));
-  else if (some == 2)
-    memcpy(to, from, 2 * sizeof(double));
-  else
-    for (int k = 0; k < some; k++)
-      memcpy((double *)to + k, (const double *)from + k, sizeof(double));
-}
+/* Lanes among other numbers. memcpy would copy them by halves through memory, and the first sum of
+ * them would wait there. */
+typedef double dvi__lane_at
+    __attribute__((vector_size(DVI__LANES * sizeof(double)), aligned(sizeof(double)), may_alias));
 
 /* Copy `rows` rows, which are `stride` apart, of `some` nodes. Lanes without a node are 0. */
 INLINE void load_rows(int rows, const double *from, size_t stride, int some, dvi__lane *x)
 {
   for (int i = 0; i < rows; i++, from += stride) {
     x[i] = (dvi__lane){0};
-    copy_lanes(some, from, &x[i]);
+    if (some == DVI__LANES) {
+      x[i] = *(const dvi__lane_at *)from;
+    } else {
+      x[i][0] = from[0];
+      if (some > 1) x[i][1] = from[1];
+      if (some > 2) x[i][2] = from[2];
+    }
   }
 }
 
 INLINE void store_rows(int rows, const dvi__lane *x, size_t stride, int some, double *to)
 {
-  for (int i = 0; i < rows; i++, to += stride) copy_lanes(some, &x[i], to);
+  for (int i = 0; i < rows; i++, to += stride) {
+    to[0] = x[i][0];
+    if (some > 1) to[1] = x[i][1];
+    if (some > 2) to[2] = x[i][2];
+    if (some > 3) to[3] = x[i][3];
+  }
 }
 
 INLINE void lanes_dot(const dvi__lane *a, const dvi__lane *b, dvi__lane *product)

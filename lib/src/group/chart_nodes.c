@@ -60,10 +60,10 @@ INLINE void place_angle(const dvi__chart *chart, const lane *c, const lane *xi, 
   }
 }
 
-INLINE void place_lanes(const dvi__chart *chart, const lane *c, const lane *xi, const lane *rate,
-                        lane *y, lane *v)
+INLINE void place_lanes(const dvi__chart *chart, dvi__chart_kind kind, const lane *c,
+                        const lane *xi, const lane *rate, lane *y, lane *v)
 {
-  switch (chart->kind) {
+  switch (kind) {
   case DVI__LINE:
     *y = *chart->y0 + *xi;
     *v = *rate;
@@ -74,37 +74,65 @@ INLINE void place_lanes(const dvi__chart *chart, const lane *c, const lane *xi, 
   }
 }
 
-/* Compute Stumpff's functions of |xi|^2. Returns the first |xi| beyond the bound, else 0. */
-INLINE double find_functions(const dvi__chart *chart, const lane *xi, int some, lane *c)
+/* Returns the first |xi| that is not below the bound, else 0. */
+INLINE double beyond_bound(dvi__chart_kind kind, const lane *square, int some)
 {
-  const double bound = dvi__chart_bound(chart->kind);
-  const lane square = xi[0] * xi[0] + xi[1] * xi[1] + xi[2] * xi[2];
-  double s[DVI__LANES], functions[DVI__NODE_FUNCTIONS][DVI__LANES];
+  const double bound = dvi__chart_bound(kind);
   for (int k = 0; k < some; k++)
-    if (!(square[k] < bound * bound)) return sqrt(square[k]);
-  memcpy(s, &square, sizeof s);
+    if (!((*square)[k] < bound * bound)) return sqrt((*square)[k]);
+  return 0;
+}
+
+INLINE void find_functions(const lane *square, lane *c)
+{
+  double s[DVI__LANES], functions[DVI__NODE_FUNCTIONS][DVI__LANES];
+  store_rows(1, square, 0, DVI__LANES, s);
   dvi__stumpff_six_of(s, functions);
-  memcpy(c, functions, sizeof functions);
+  load_rows(DVI__NODE_FUNCTIONS, functions[0], DVI__LANES, DVI__LANES, c);
+}
+
+/* The kind and the usual numbers of nodes are constants, so that all vectors are in registers. */
+INLINE double place_some(const dvi__chart *chart, dvi__chart_kind kind, const dvi__chart_nodes *n,
+                         int k, int some)
+{
+  const int size = dvi__chart_size(kind), stored = dvi__chart_stored(kind);
+  const size_t count = (size_t)n->count;
+  lane xi[3], rate[3], c[DVI__NODE_FUNCTIONS], y[9], v[9];
+  load_rows(size, n->xi + k, n->local, some, xi);
+  load_rows(size, n->rate + k, n->local, some, rate);
+  if (kind != DVI__LINE) {
+    lane square = xi[0] * xi[0];
+    for (int i = 1; i < size; i++) square += xi[i] * xi[i];
+    const double beyond = beyond_bound(kind, &square, some);
+    if (beyond != 0) return beyond;
+    find_functions(&square, c);
+    store_rows(DVI__NODE_FUNCTIONS, c, count, some, n->functions + k);
+  }
+  place_lanes(chart, kind, c, xi, rate, y, v);
+  store_rows(stored, y, count, some, n->y + k);
+  if (n->v != NULL) store_rows(stored, v, count, some, n->v + k);
+  return 0;
+}
+
+INLINE double place_kind(const dvi__chart *chart, dvi__chart_kind kind, const dvi__chart_nodes *n)
+{
+  for (int k = 0; k < n->count; k += DVI__LANES) {
+    const int some = some_of(n->count, k);
+    const double beyond = some == DVI__LANES ? place_some(chart, kind, n, k, DVI__LANES)
+                          : some == 2        ? place_some(chart, kind, n, k, 2)
+                                             : place_some(chart, kind, n, k, some);
+    if (beyond != 0) return beyond;
+  }
   return 0;
 }
 
 WIDE static double place_all(const dvi__chart *chart, const dvi__chart_nodes *n)
 {
-  const int size = dvi__chart_size(chart->kind), stored = dvi__chart_stored(chart->kind);
-  const size_t count = (size_t)n->count;
-  for (int k = 0; k < n->count; k += DVI__LANES) {
-    const int some = some_of(n->count, k);
-    lane xi[3] = {{0}}, rate[3] = {{0}}, c[DVI__NODE_FUNCTIONS], y[9], v[9];
-    load_rows(size, n->xi + k, n->local, some, xi);
-    load_rows(size, n->rate + k, n->local, some, rate);
-    if (chart->kind != DVI__LINE) {
-      const double beyond = find_functions(chart, xi, some, c);
-      if (beyond != 0) return beyond;
-      store_rows(DVI__NODE_FUNCTIONS, c, count, some, n->functions + k);
-    }
-    place_lanes(chart, c, xi, rate, y, v);
-    store_rows(stored, y, count, some, n->y + k);
-    if (n->v != NULL) store_rows(stored, v, count, some, n->v + k);
+  switch (chart->kind) {
+  case DVI__LINE: return place_kind(chart, DVI__LINE, n);
+  case DVI__CIRCLE: return place_kind(chart, DVI__CIRCLE, n);
+  case DVI__SPHERE: return place_kind(chart, DVI__SPHERE, n);
+  case DVI__ROTATION: return place_kind(chart, DVI__ROTATION, n);
   }
   return 0;
 }
@@ -205,11 +233,11 @@ INLINE void differentiate_angle(const dvi__chart *chart, const lane *c, const la
            *rate * (c[0] * on_centre + sine * on_basis);
 }
 
-INLINE void differentiate_lanes(const dvi__chart *chart, const lane *c, const lane *xi,
-                                const lane *rate, const lane *y, const lane *v, const lane *a,
-                                const lane *b, lane *in_xi, lane *in_rate)
+INLINE void differentiate_lanes(const dvi__chart *chart, dvi__chart_kind kind, const lane *c,
+                                const lane *xi, const lane *rate, const lane *y, const lane *v,
+                                const lane *a, const lane *b, lane *in_xi, lane *in_rate)
 {
-  switch (chart->kind) {
+  switch (kind) {
   case DVI__LINE:
     *in_xi = *a;
     *in_rate = *b;
@@ -274,16 +302,16 @@ INLINE void add_rotation_force(const dvi__chart *chart, const lane *c, const lan
   for (int i = 0; i < 3; i++) in_xi[i] += force[i];
 }
 
-INLINE void move_lanes(const dvi__chart *chart, const double *inertia, const lane *c,
-                       const lane *xi, const lane *rate, const lane *y, const lane *a, lane *in_xi,
-                       lane *in_rate)
+INLINE void move_lanes(const dvi__chart *chart, dvi__chart_kind kind, const double *inertia,
+                       const lane *c, const lane *xi, const lane *rate, const lane *y,
+                       const lane *a, lane *in_xi, lane *in_rate)
 {
-  switch (chart->kind) {
+  switch (kind) {
   case DVI__LINE:
   case DVI__CIRCLE:
     *in_rate = *inertia * *rate;
     *in_xi = *a;
-    if (chart->kind == DVI__CIRCLE)
+    if (kind == DVI__CIRCLE)
       *in_xi = c[0] * (a[0] * chart->basis[0][0] + a[1] * chart->basis[0][1]) -
                c[1] * *xi * (a[0] * chart->y0[0] + a[1] * chart->y0[1]);
     return;
@@ -300,38 +328,63 @@ INLINE void move_lanes(const dvi__chart *chart, const double *inertia, const lan
 
 /* ---- all nodes ---- */
 
-/* Differentiate at some nodes from k on, by the even mass `inertia` unless it is NULL. */
-INLINE void differentiate_some(const dvi__chart *chart, const double *inertia,
-                               const dvi__chart_nodes *n, int k)
+/* Differentiate at some nodes from k on, with the even mass `inertia` if `even`. */
+INLINE void differentiate_some(const dvi__chart *chart, dvi__chart_kind kind, int even,
+                               const double *inertia, const dvi__chart_nodes *n, int k, int some)
 {
-  const int size = dvi__chart_size(chart->kind), stored = dvi__chart_stored(chart->kind),
-            some = some_of(n->count, k);
+  const int size = dvi__chart_size(kind), stored = dvi__chart_stored(kind);
   const size_t count = (size_t)n->count;
-  lane xi[3], rate[3], c[DVI__NODE_FUNCTIONS], y[9], v[9], a[9], b[9], in_xi[3], in_rate[3];
+  lane xi[3], rate[3], c[DVI__NODE_FUNCTIONS], y[9], a[9], in_xi[3], in_rate[3];
   load_rows(size, n->xi + k, n->local, some, xi);
   load_rows(size, n->rate + k, n->local, some, rate);
-  if (chart->kind != DVI__LINE) load_rows(DVI__NODE_FUNCTIONS, n->functions + k, count, some, c);
+  if (kind != DVI__LINE) load_rows(DVI__NODE_FUNCTIONS, n->functions + k, count, some, c);
   load_rows(stored, n->a + k, count, some, a);
-  if (chart->kind == DVI__ROTATION) load_rows(stored, n->y + k, count, some, y);
-  if (inertia != NULL) {
-    move_lanes(chart, inertia, c, xi, rate, y, a, in_xi, in_rate);
+  if (kind == DVI__ROTATION) load_rows(stored, n->y + k, count, some, y);
+  if (even) {
+    move_lanes(chart, kind, inertia, c, xi, rate, y, a, in_xi, in_rate);
   } else {
+    lane v[9], b[9];
     load_rows(stored, n->b + k, count, some, b);
-    if (chart->kind == DVI__ROTATION) load_rows(stored, n->v + k, count, some, v);
-    differentiate_lanes(chart, c, xi, rate, y, v, a, b, in_xi, in_rate);
+    if (kind == DVI__ROTATION) load_rows(stored, n->v + k, count, some, v);
+    differentiate_lanes(chart, kind, c, xi, rate, y, v, a, b, in_xi, in_rate);
   }
   store_rows(size, in_xi, n->local, some, n->in_xi + k);
   store_rows(size, in_rate, n->local, some, n->in_rate + k);
 }
 
+INLINE void differentiate_kind(const dvi__chart *chart, dvi__chart_kind kind, int even,
+                               const double *inertia, const dvi__chart_nodes *n)
+{
+  for (int k = 0; k < n->count; k += DVI__LANES) {
+    const int some = some_of(n->count, k);
+    if (some == DVI__LANES)
+      differentiate_some(chart, kind, even, inertia, n, k, DVI__LANES);
+    else if (some == 2)
+      differentiate_some(chart, kind, even, inertia, n, k, 2);
+    else
+      differentiate_some(chart, kind, even, inertia, n, k, some);
+  }
+}
+
+INLINE void differentiate(const dvi__chart *chart, int even, const double *inertia,
+                          const dvi__chart_nodes *n)
+{
+  switch (chart->kind) {
+  case DVI__LINE: differentiate_kind(chart, DVI__LINE, even, inertia, n); return;
+  case DVI__CIRCLE: differentiate_kind(chart, DVI__CIRCLE, even, inertia, n); return;
+  case DVI__SPHERE: differentiate_kind(chart, DVI__SPHERE, even, inertia, n); return;
+  case DVI__ROTATION: differentiate_kind(chart, DVI__ROTATION, even, inertia, n); return;
+  }
+}
+
 WIDE static void differentiate_all(const dvi__chart *chart, const dvi__chart_nodes *n)
 {
-  for (int k = 0; k < n->count; k += DVI__LANES) differentiate_some(chart, NULL, n, k);
+  differentiate(chart, 0, NULL, n);
 }
 
 WIDE static void move_all(const dvi__chart *chart, const double *inertia, const dvi__chart_nodes *n)
 {
-  for (int k = 0; k < n->count; k += DVI__LANES) differentiate_some(chart, inertia, n, k);
+  differentiate(chart, 1, inertia, n);
 }
 
 void dvi__chart_differentiate_nodes(const dvi__chart *chart, const dvi__chart_nodes *nodes)
@@ -357,23 +410,34 @@ INLINE void add_moment(int vectors, const lane *y, const lane *a, lane *N)
   for (int i = 0; i < 3; i++) N[i] += moment[i];
 }
 
+INLINE void moments_of_some(int vectors, const double *mass, const dvi__chart_nodes *n, int k,
+                            int some, size_t stride, double *N)
+{
+  const size_t count = (size_t)n->count;
+  lane y[9], a[9], sum[3] = {{0}};
+  load_rows(3 * vectors, n->y + k, count, some, y);
+  load_rows(3 * vectors, n->a + k, count, some, a);
+  add_moment(vectors, y, a, sum);
+  if (mass != NULL) {
+    load_rows(3 * vectors, n->v + k, count, some, y);
+    load_rows(3 * vectors, n->b + k, count, some, a);
+    for (int i = 0; i < 3 * vectors; i++) a[i] -= mass[i % vectors] * y[i];
+    add_moment(vectors, y, a, sum);
+  }
+  store_rows(3, sum, stride, some, N + k);
+}
+
 INLINE void moments_of_all(int vectors, const double *mass, const dvi__chart_nodes *n,
                            size_t stride, double *N)
 {
-  const size_t count = (size_t)n->count;
   for (int k = 0; k < n->count; k += DVI__LANES) {
     const int some = some_of(n->count, k);
-    lane y[9], a[9], sum[3] = {{0}};
-    load_rows(3 * vectors, n->y + k, count, some, y);
-    load_rows(3 * vectors, n->a + k, count, some, a);
-    add_moment(vectors, y, a, sum);
-    if (mass != NULL) {
-      load_rows(3 * vectors, n->v + k, count, some, y);
-      load_rows(3 * vectors, n->b + k, count, some, a);
-      for (int i = 0; i < 3 * vectors; i++) a[i] -= mass[i % vectors] * y[i];
-      add_moment(vectors, y, a, sum);
-    }
-    store_rows(3, sum, stride, some, N + k);
+    if (some == DVI__LANES)
+      moments_of_some(vectors, mass, n, k, DVI__LANES, stride, N);
+    else if (some == 2)
+      moments_of_some(vectors, mass, n, k, 2, stride, N);
+    else
+      moments_of_some(vectors, mass, n, k, some, stride, N);
   }
 }
 

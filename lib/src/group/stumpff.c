@@ -11,8 +11,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "group/chart_lanes.h"
 #include "num/simd/wide.h"
-#include "num/simd/width.h"
 
 #define NEAR 2.5 /* a quarter turn */
 #define FAR 40.0 /* a full turn */
@@ -133,7 +133,7 @@ void dvi__stumpff(double s, double c[9])
 
 /* ---- several arguments ---- */
 
-typedef double lane __attribute__((vector_size(DVI__STUMPFF_LANES * sizeof(double))));
+typedef dvi__lane lane;
 
 /* The operations are those of sum_stumpff_series. */
 INLINE void sum_series_of(int k, int pairs, const lane *s, lane *sum)
@@ -150,11 +150,11 @@ INLINE void sum_series_of(int k, int pairs, const lane *s, lane *sum)
 WIDE static void six_near(const double *s, double *functions)
 {
   lane x, c[6];
-  memcpy(&x, s, sizeof x);
+  load_rows(1, s, 0, DVI__LANES, &x);
   sum_series_of(5, 5, &x, &c[5]);
   sum_series_of(4, 5, &x, &c[4]);
   for (int k = 3; k >= 0; k--) c[k] = inverse_factorial[k] - x * c[k + 2];
-  memcpy(functions, c, sizeof c);
+  store_rows(6, c, DVI__LANES, DVI__LANES, functions);
 }
 
 void dvi__stumpff_six_of(const double s[DVI__STUMPFF_LANES], double c[6][DVI__STUMPFF_LANES])

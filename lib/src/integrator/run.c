@@ -152,7 +152,7 @@ static dvi_status check_run_events(const dvi_run_options *options)
 
 /* ---- a run ---- */
 
-/* Tell whether steps may be taken together. Only in a pass they are if the run may be cancelled. */
+/* Tell whether steps may be taken together. If the run may be cancelled, only passes are. */
 static int can_advance_together(const mechanics *m)
 {
   const dvi_integrator *I = m->integrator;

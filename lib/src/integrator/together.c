@@ -23,25 +23,49 @@ static int steps_in_a_pass(dvi_integrator *I, double h, int steps)
 {
   double length[TOGETHER];
   for (int i = 0; i < steps; i++) length[i] = h;
+  dvi__exchange_memory(I);
   I->next.density = I->now.density;
   I->next.side = I->now.side;
-  if (!I->stepper.method->pass(&I->stepper, &I->now, I->memory_before, &I->next, length, steps) ||
-      !isfinite(I->next.t) || I->next.t + h == I->next.t)
-    return 0;
-  dvi__integrator_accept(I, h * steps);
-  return steps;
+  if (I->stepper.method->pass(&I->stepper, &I->now, I->memory_before, &I->next, length, steps) &&
+      isfinite(I->next.t) && I->next.t + h != I->next.t) {
+    dvi__integrator_accept(I, h * steps);
+    I->counters.steps += steps - 1;
+    return steps;
+  }
+  dvi__exchange_memory(I);
+  return 0;
 }
 
-/* Take steps one after the other. `last` has been overwritten if they are more than one. */
+/* Take steps by passes. Where one pass of several steps does not save ways through memory, each has
+ * its own, so that the last step is one step. */
+static int steps_in_passes(dvi_integrator *I, double h, int steps)
+{
+  const dvi__method *method = I->stepper.method;
+  int taken = 0;
+  if (method->traffic != NULL && method->traffic(&I->stepper, steps) > 0)
+    return steps_in_a_pass(I, h, steps);
+  while (taken < steps && steps_in_a_pass(I, h, 1)) taken++;
+  return taken;
+}
+
+/* Take steps one after the other. If they are more than one, `last` has been overwritten, also
+ * where none of them is accepted. There is no last step then. */
 static int steps_in_a_march(dvi_integrator *I, double h, int steps)
 {
+  const double start = I->last.t;
+  dvi__exchange_memory(I);
   dvi__state_copy(I, &I->now, &I->next);
   memcpy(I->stepper.memory, I->memory_before, I->stepper.memory_count * sizeof(double));
   const int taken = I->stepper.method->march(&I->stepper, &I->next, &I->last, h, steps);
-  if (taken == 0) return 0;
+  if (taken == 0) {
+    if (I->last.t != start) I->last_h = 0;
+    dvi__exchange_memory(I);
+    return 0;
+  }
   const dvi__state before = I->last;
   dvi__integrator_accept(I, h);
   if (taken == 1) return 1;
+  I->counters.steps += taken - 1;
   I->next = I->last;
   I->last = before;
   I->last.q_compensation = I->next.q_compensation;
@@ -50,28 +74,24 @@ static int steps_in_a_march(dvi_integrator *I, double h, int steps)
   return taken;
 }
 
-/* Take steps together. Returns 0 if that is not possible, and the state has not changed. */
+/* Take steps together. Returns their number, or 0 if that is not possible, and the state has not
+ * changed. */
 static int steps_together(dvi_integrator *I, double h, int steps)
 {
   const int marches = I->stepper.marches;
   if ((!marches && I->stepper.method->pass == NULL) || !can_step_together(I, h)) return 0;
-  dvi__exchange_memory(I);
-  const int taken = marches ? steps_in_a_march(I, h, steps) : steps_in_a_pass(I, h, steps);
-  if (taken == 0) dvi__exchange_memory(I);
-  if (taken > 1) I->counters.steps += taken - 1;
-  return taken;
+  return marches ? steps_in_a_march(I, h, steps) : steps_in_passes(I, h, steps);
 }
 
-/* A pass that is not possible once will not be soon. */
+/* Between the steps of a march single ones are taken where it stops. */
 dvi_status dvi__integrator_steps(dvi_integrator *I, double h, long count, long *taken)
 {
   const int steps = count < TOGETHER ? (int)count : TOGETHER;
-  int tries = 1;
   for (int i = 0; i < steps; *taken = i) {
-    const int together = tries ? steps_together(I, h, steps - i) : 0;
+    const int together = steps_together(I, h, steps - i);
+    if (together == 0 && !I->stepper.marches) return DVI_OK;
     if (together == 0) DVI_TRY(dvi_integrator_step(I, h));
     i += together > 0 ? together : 1;
-    tries = together > 0 || I->stepper.marches;
   }
   return DVI_OK;
 }

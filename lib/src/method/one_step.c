@@ -171,7 +171,8 @@ void dvi__one_step_explain(const dvi__stepper *self, dvi__text *text)
       100.0 * dvi__pattern_entries(pattern) / pattern->columns / pattern->columns);
   one->kind->explain(self, text);
   dvi__text_add(text, "solver: %sNewton's method, last a path followed from shorter steps\n",
-                one->equations.has_iteration
-                    ? "fixed point while it contracts by 0.45 or better, else "
-                    : "");
+                !one->equations.has_iteration ? ""
+                : one->equations.frozen
+                    ? "simplified Newton's method, "
+                    : "fixed point while it contracts by 0.45 or better, else ");
 }

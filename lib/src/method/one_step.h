@@ -36,13 +36,13 @@ typedef struct dvi__step_kind {
   /* The time that passes in the step with the solution x, for kinds that accept time-transformed
    * systems. NULL selects h. */
   dvi_status (*duration)(void *of, const double *x, double *duration);
-  /* Fixed point iteration, as the members of dvi__equations with these names (nonlinear.h), for the
-   * steps that `has_iteration` accepts. NULL if there is none. */
+  /* Fixed-point iteration, as the members of dvi__equations with these names (nonlinear.h). It
+   * serves if `has_iteration` says so. All are NULL if there is none. */
   int (*has_iteration)(const void *of);
   void (*fixed_point_begin)(void *of, const double *x);
   dvi_status (*fixed_point_iterate)(void *of, double *change, double *largest);
   void (*fixed_point_end)(void *of, double *x);
-  int fixed_point_frozen;
+  int fixed_point_frozen; /* that iteration is simplified Newton's method */
   /* Newton's method factors each Jacobian, because forces cost more than factors, and the step
    * corrects increments from the last point */
   int renewed;
@@ -70,7 +70,7 @@ dvi_status dvi__one_step_create(dvi__stepper *self, size_t size, const dvi__step
  * velocity at the start. Later guesses continue the remembered numbers. */
 dvi_status dvi__one_step_solve(dvi__stepper *self, const dvi__state *state, double h);
 
-/* Tell whether the last solution is that of fixed point iteration. */
+/* Tell whether the last solution is that of fixed-point iteration. */
 int dvi__one_step_is_iterated(const dvi__stepper *self);
 
 /* The momentum [n] from which a part of the step starts. Where a method leaves p = alpha(q), the

@@ -106,7 +106,10 @@ static dvi_status stationary_iterate(dvi__stationary *s, const dvi__stationary_s
   }
   const dvi_status status = stationary_try(s, step, DVI__FIXED_POINT, &report);
   s->iterated = status == DVI_OK;
-  step->stepper->counters->fixed_points += s->iterated;
+  if (s->iterated) {
+    dvi_counters *counters = step->stepper->counters;
+    (*(s->frozen ? &counters->simplified : &counters->fixed_points))++;
+  }
   if (s->iterated && s->frozen) stationary_judge(step->stepper, &report);
   wait[LAST] = s->iterated ? 0 : wait[LAST] == 0 ? 1 : fmin(2 * wait[LAST], longest_wait);
   wait[STEPS] = wait[LAST];

@@ -1,7 +1,7 @@
-/* Solve the stationarity conditions of a step by fixed point iteration where the equations have one
+/* Solve the stationarity conditions of a step by fixed-point iteration where the equations have one
  * that contracts, else by Newton's method. If this fails, or on request, follow the branch of
- * shorter steps. Methods share these functions if their step is not one
- * element of the action, for which element_step.h has its own. */
+ * shorter steps. Methods share these functions if their step is not one element of the action, for
+ * which element_step.h has its own. */
 #ifndef DVI_METHOD_STATIONARY_H
 #define DVI_METHOD_STATIONARY_H
 #include "method/method.h"
@@ -18,21 +18,21 @@ typedef struct dvi__stationary_step {
   dvi_status (*guess)(dvi__stepper *self, double h, double *x);
 } dvi__stationary_step;
 
-/* Numbers in the stepper's memory that tell when fixed point iteration is tried again. */
+/* Numbers in the stepper's memory that tell when fixed-point iteration is tried again. */
 enum { DVI__LADDER = 2 };
 
 typedef struct dvi__stationary {
   dvi__solver *solver;
   double *x;         /* [unknowns] the solution */
   double *room;      /* [DVI__BRANCH_ROOM * unknowns] */
-  int has_iteration; /* the equations have a fixed point iteration */
+  int has_iteration; /* the equations have a fixed-point iteration */
   int frozen;        /* it is simplified Newton's method */
   int iterated;      /* the last solution is the iteration's */
   size_t ladder;     /* place of those numbers in the stepper's memory, which the caller sets */
 } dvi__stationary;
 
 /* Set what all such methods have in common, zeros on the diagonal of the Jacobian. The equations'
- * residual, jacobian, row_scale and fixed point iteration are the method's. */
+ * residual, jacobian, row_scale and fixed-point iteration are the method's. */
 dvi_status dvi__stationary_create(dvi__stepper *self, dvi__equations *equations,
                                   dvi__stationary *stationary);
 void dvi__stationary_clear(dvi__stationary *stationary);

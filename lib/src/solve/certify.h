@@ -1,10 +1,16 @@
-/* Solutions in the equations' own variables whose residuals are known. The last iteration of each
- * shows the residual at the point before it, from which all results of the solution come. KINSOL's
- * test is on the largest residual, so that many solutions pass together if each would pass
- * alone. */
+/* KINSOL's test of solutions that other rungs found. In the equations' own variables their
+ * residuals are known: the last iteration of each shows the residual at the point before it, from
+ * which all results of the solution come. The test is on the largest residual, so that many
+ * solutions pass together if each would pass alone. */
 #ifndef DVI_SOLVE_CERTIFY_H
 #define DVI_SOLVE_CERTIFY_H
 #include "solve/nonlinear.h"
+
+/* Test a solution. x stays, and NULL stands for the equations' own variables after fixed-point
+ * iteration. DVI_NOT_CONVERGED: the solution does not pass, and the KINSOL rung should take
+ * over. */
+dvi_status dvi__certify(dvi__solver *solver, double size, const double *x,
+                        dvi__solve_report *report);
 
 /* Let the fixed-point rung keep the point before the last iteration for dvi__certify, and prepare
  * for the test of up to `most` solutions, if these are more than 1. DVI_NO_MEMORY. */

@@ -167,7 +167,7 @@ static int kinsol_configure(dvi__kinsol *k)
          KINSetMaxNewtonStep(m, 1e3) == 0 && KINSetNumMaxIters(m, 100) == 0;
 }
 
-dvi_status dvi__kinsol_create(dvi__solver *solver, int own, dvi__kinsol **kinsol)
+static dvi_status kinsol_create(dvi__solver *solver, int own, dvi__kinsol **kinsol)
 {
   dvi__kinsol *k = *kinsol = DVI_NEW(dvi__kinsol, 1);
   if (k == NULL) return dvi__fail(DVI_NO_MEMORY, "KINSOL: no memory");
@@ -184,6 +184,14 @@ dvi_status dvi__kinsol_create(dvi__solver *solver, int own, dvi__kinsol **kinsol
   /* Only memory can be missing, because all arguments are valid. */
   return dvi__fail(DVI_NO_MEMORY, "KINSOL: no memory for %d unknowns",
                    own ? own * solver->equations.own_unknowns : solver->equations.unknowns);
+}
+
+dvi_status dvi__kinsol_prepare(dvi__solver *s, int own, dvi__kinsol **kinsol)
+{
+  if (*kinsol != NULL) return DVI_OK;
+  DVI_TRY(kinsol_create(s, own, kinsol));
+  s->counters->preparations++;
+  return DVI_OK;
 }
 
 void dvi__kinsol_destroy(dvi__kinsol **kinsol)
@@ -230,9 +238,11 @@ static double power_above(double x)
   return exponent < DBL_MAX_EXP ? ldexp(1.0, exponent) : x;
 }
 
-/* Give the size to a factor of 2, which seldom changes from the last one. */
-static double size_to_a_power(double last, double whole)
+/* Give the size of a solution to a factor of 2, which seldom changes from the last one. Zeros have
+ * the size of the state. */
+static double size_to_a_power(double last, double whole, double size)
 {
+  if (whole == 0) whole = size > 0 ? size : 1;
   return whole >= 0.5 * last && whole < last ? last : power_above(whole);
 }
 
@@ -245,11 +255,11 @@ static dvi_status fail_to_scale(double whole)
 
 /* Set the scales of own variables, whose residual is a change of a variable. The row scales, which
  * they do not need, hold the size of each solution. */
-static dvi_status scale_solution(dvi__kinsol *k, int i, double whole)
+static dvi_status scale_solution(dvi__kinsol *k, int i, double whole, double size)
 {
   const int numbers = k->solver->equations.own_unknowns;
   double *restrict scale = NV_DATA_S(k->x_scale) + i * numbers;
-  whole = size_to_a_power(k->row_scale[i], whole);
+  whole = size_to_a_power(k->row_scale[i], whole, size);
   if (whole == k->row_scale[i]) return DVI_OK;
   k->row_scale[i] = 1 / whole > 0 && 1 / whole <= DBL_MAX ? whole : 0;
   if (k->row_scale[i] == 0) return fail_to_scale(whole);
@@ -263,9 +273,8 @@ static dvi_status set_scales(dvi__kinsol *k, double size, const double *x)
 {
   double whole = k->own ? k->solver->whole : dvi__largest((size_t)k->unknowns, x);
   int unchanged = 0;
-  if (whole == 0) whole = size > 0 ? size : 1;
-  if (k->own) return scale_solution(k, 0, whole);
-  whole = size_to_a_power(k->whole, whole);
+  if (k->own) return scale_solution(k, 0, whole, size);
+  whole = size_to_a_power(k->whole, whole, size);
   DVI_TRY(k->solver->equations.row_scale(k->solver->equations.of, k->row_scale, &unchanged));
   if (unchanged && whole == k->whole) return DVI_OK;
   k->whole = whole;
@@ -294,13 +303,13 @@ double *dvi__kinsol_point(dvi__kinsol *k, int i)
   return NV_DATA_S(k->x) + i * k->solver->equations.own_unknowns;
 }
 
-dvi_status dvi__kinsol_note(dvi__kinsol *k, int i, const double *next, double whole)
+dvi_status dvi__kinsol_note(dvi__kinsol *k, int i, const double *next, double whole, double size)
 {
   const int numbers = k->solver->equations.own_unknowns;
   const double *restrict point = dvi__kinsol_point(k, i);
   double *restrict residual = k->known + i * numbers;
   for (int j = 0; j < numbers; j++) residual[j] = point[j] - next[j];
-  return scale_solution(k, i, whole);
+  return scale_solution(k, i, whole, size);
 }
 
 int dvi__kinsol_certify_known(dvi__kinsol *k, int count)

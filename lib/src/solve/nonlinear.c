@@ -312,7 +312,7 @@ static dvi_status fixed_point_iterate(dvi__solver *s, double *x, double *correct
   return DVI_OK;
 }
 
-static dvi_status prepare_chord(dvi__solver *s, const double *x)
+dvi_status dvi__solver_prepare_chord(dvi__solver *s, const double *x)
 {
   const dvi__equations *equations = &s->equations;
   return equations->prepare_chord != NULL ? equations->prepare_chord(equations->of, x) : DVI_OK;
@@ -320,7 +320,7 @@ static dvi_status prepare_chord(dvi__solver *s, const double *x)
 
 static dvi_status fixed_point_begin(dvi__solver *s, const double *x)
 {
-  if (s->equations.fixed_point_iterate == NULL) return prepare_chord(s, x);
+  if (s->equations.fixed_point_iterate == NULL) return dvi__solver_prepare_chord(s, x);
   s->equations.fixed_point_begin(s->equations.of, x);
   return DVI_OK;
 }
@@ -406,19 +406,11 @@ static dvi_status solve_by_simplified_newton(dvi__solver *s, double size, int wa
                    history.last, history.before);
 }
 
-static dvi_status solver_prepare_kinsol(dvi__solver *s, int own, dvi__kinsol **kinsol)
-{
-  if (*kinsol != NULL) return DVI_OK;
-  DVI_TRY(dvi__kinsol_create(s, own, kinsol));
-  s->counters->preparations++;
-  return DVI_OK;
-}
-
 static dvi_status solve_by_kinsol(dvi__solver *s, double size, double *x, dvi__solve_report *report)
 {
-  DVI_TRY(solver_prepare_kinsol(s, 0, &s->kinsol));
+  DVI_TRY(dvi__kinsol_prepare(s, 0, &s->kinsol));
   s->counters->kinsols++;
-  DVI_TRY(prepare_chord(s, x));
+  DVI_TRY(dvi__solver_prepare_chord(s, x));
   /* KINSOL's own test is skipped. Newton's method from its last point is the stricter test. */
   const dvi_status searched = dvi__kinsol_solve(s->kinsol, size, x, report);
   if (searched < 0) return searched;
@@ -441,47 +433,4 @@ dvi_status dvi__solve(dvi__solver *solver, dvi__rung rung, double size, int wary
   case DVI__KINSOL: return solve_by_kinsol(solver, size, x, report);
   }
   return dvi__fail(DVI_BAD_ARGUMENT, "solver: unknown rung %d", (int)rung);
-}
-
-/* Test the residual that the last iteration showed. */
-static int certify_last(dvi__solver *s, double size)
-{
-  const double whole = s->whole != 0 ? s->whole : size > 0 ? size : 1;
-  if (!s->has_point) return 0;
-  s->has_point = 0; /* a test uses its place */
-  return dvi__kinsol_note(s->tester, 0, s->equations.own_point(s->equations.of), whole) == DVI_OK &&
-         dvi__kinsol_certify_known(s->tester, 1);
-}
-
-/* Where that one is too large, which roundings may be, the next one decides. */
-static dvi_status certify_own(dvi__solver *s, double size, int *certified,
-                              dvi__solve_report *report)
-{
-  *certified = certify_last(s, size);
-  if (*certified) return DVI_OK;
-  DVI_TRY(solver_prepare_kinsol(s, 1, &s->tester));
-  return dvi__kinsol_certify(s->tester, size, s->equations.own_point(s->equations.of), certified,
-                             report);
-}
-
-static dvi_status certify_rows(dvi__solver *s, double size, const double *x, int *certified,
-                               dvi__solve_report *report)
-{
-  DVI_TRY(solver_prepare_kinsol(s, 0, &s->kinsol));
-  DVI_TRY(prepare_chord(s, x));
-  return dvi__kinsol_certify(s->kinsol, size, x, certified, report);
-}
-
-dvi_status dvi__certify(dvi__solver *solver, double size, const double *x,
-                        dvi__solve_report *report)
-{
-  int certified = 0;
-  DVI_TRY(x != NULL ? certify_rows(solver, size, x, &certified, report)
-                    : certify_own(solver, size, &certified, report));
-  if (!certified)
-    return dvi__fail(DVI_NOT_CONVERGED,
-                     "KINSOL does not certify the solution (scaled residual %.1e)",
-                     report->residual);
-  solver->counters->certified++;
-  return DVI_OK;
 }

@@ -115,12 +115,6 @@ void dvi__solver_destroy(dvi__solver **solver);
 dvi_status dvi__solve(dvi__solver *solver, dvi__rung rung, double size, int wary, int patient,
                       double *x, dvi__solve_report *report);
 
-/* Let KINSOL test a solution that another rung found. x stays, and NULL stands for the equations'
- * own variables after fixed point iteration. DVI_NOT_CONVERGED: the solution does not pass, and the
- * KINSOL rung should take over. */
-dvi_status dvi__certify(dvi__solver *solver, double size, const double *x,
-                        dvi__solve_report *report);
-
 /* Evaluate the Jacobian's values at x without a factor. */
 dvi_status dvi__solver_jacobian(dvi__solver *solver, const double *x, double *values);
 

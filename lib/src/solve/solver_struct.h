@@ -28,6 +28,9 @@ struct dvi__solver {
   int has_point;       /* and has it */
 };
 
+/* Prepare the operation `chord` at x, if that needs it. */
+dvi_status dvi__solver_prepare_chord(dvi__solver *solver, const double *x);
+
 /* Evaluate the residual and count it. */
 dvi_status dvi__solver_residual(dvi__solver *solver, const double *x, double *r);
 
@@ -61,16 +64,18 @@ dvi_status dvi__newton(dvi__solver *solver, double size, int wary, double *x,
                        dvi__solve_report *report);
 
 /* KINSOL (kinsol.c). After a positive status of dvi__kinsol_solve there is no solution, and x holds
- * the last point. `own` makes one for the equations' own variables, which does nothing but
- * certify. If it is more than 1, that is the number of solutions at once. */
-dvi_status dvi__kinsol_create(dvi__solver *solver, int own, dvi__kinsol **kinsol);
+ * the last point. dvi__kinsol_prepare makes one if there is none. `own` makes it for the equations'
+ * own variables, which does nothing but certify. If it is more than 1, that is the number of
+ * solutions at once. */
+dvi_status dvi__kinsol_prepare(dvi__solver *solver, int own, dvi__kinsol **kinsol);
 void dvi__kinsol_destroy(dvi__kinsol **kinsol);
 /* Find whether x is a solution by KINSOL's own test of its residual. */
 dvi_status dvi__kinsol_certify(dvi__kinsol *kinsol, double size, const double *x, int *certified,
                                dvi__solve_report *report);
 /* Certify solutions in own variables by residuals that are known (certify.h). */
 double *dvi__kinsol_point(dvi__kinsol *kinsol, int i);
-dvi_status dvi__kinsol_note(dvi__kinsol *kinsol, int i, const double *next, double whole);
+dvi_status dvi__kinsol_note(dvi__kinsol *kinsol, int i, const double *next, double whole,
+                            double size);
 int dvi__kinsol_certify_known(dvi__kinsol *kinsol, int count);
 dvi_status dvi__kinsol_solve(dvi__kinsol *kinsol, double size, double *x,
                              dvi__solve_report *report);

@@ -161,7 +161,7 @@ static const struct {
     {"magnetic-pair", "dg-phase", "an even degree with all its moments", 0.3},
     {"magnetic-pair", "dg-phase:degree=3", "an even degree with all its moments", 0.3},
     {"magnetic-pair", "dg-phase:degree=2,moments=0", "an even degree with all its moments", 0.3},
-    {"magnetic-pair", "dg-phase:degree=2", "smaller steps keep it small for longer", 1.2},
+    {"magnetic-pair", "dg-phase:degree=2", "smaller steps keep it small for longer", 1.1},
     {"lotka-volterra", "dg-phase", "take another method, dg:degree=3,stiffness=c", 0.1}};
 
 START_TEST(a_parasite_does_with_a_remedy_that_is_another_method)

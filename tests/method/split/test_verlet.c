@@ -1,5 +1,6 @@
 /* labels: unit */
 #include <check.h>
+#include <math.h>
 #include <stdlib.h>
 
 #include "support/runs.h"
@@ -58,6 +59,57 @@ START_TEST(a_step_with_linear_friction_evaluates_forces_twice)
   ck_assert_int_eq(after.factorizations, 0);
   dvi_integrator_destroy(&integrator);
   problem_destroy(&damped);
+}
+END_TEST
+
+/* Air that drives a body backward in time, and a kick in the second step. */
+static int kick_value(double t, const double *q, double *V, void *user)
+{
+  (void)user;
+  *V = t < -0.05 ? -140 * q[0] : 0;
+  return 0;
+}
+
+static int kick_gradient(double t, const double *q, double *V_q, void *user)
+{
+  (void)q, (void)user;
+  V_q[0] = t < -0.05 ? -140 : 0;
+  return 0;
+}
+
+static int drag(double t, const double *q, const double *v, double *F, void *user)
+{
+  (void)t, (void)q, (void)user;
+  F[0] = -fabs(v[0]) * v[0];
+  return 0;
+}
+
+/* v = g + |v|v/20 has three solutions. That of short steps is the one near g. The velocity before
+ * the kick is nearly where the equation's slope vanishes. */
+START_TEST(friction_has_the_velocity_of_short_steps)
+{
+  const dvi_potential potential = {.value = kick_value, .gradient = kick_gradient};
+  const dvi_force force = {.value = drag};
+  const dvi_system_terms terms = {.dimension = 1,
+                                  .mass.scalar = 1,
+                                  .potentials = &potential,
+                                  .potential_count = 1,
+                                  .forces = &force,
+                                  .force_count = 1};
+  const double h = -0.1, before = 9.5, q = 0, p = before - before * before / 20;
+  dvi_system *system = NULL;
+  ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
+  dvi_integrator *integrator = create_integrator(system, "verlet");
+  ck_assert_int_eq(dvi_integrator_start(integrator, 0, &q, &p), DVI_OK);
+  advance(integrator, h, 1);
+  const double q1 = dvi_integrator_q(integrator)[0];
+  ck_assert_double_eq_tol(q1, h * before, 1e-14);
+  const double g = dvi_integrator_p(integrator)[0] - h / 2 * -140;
+  advance(integrator, h, 1);
+  ck_assert_double_eq_tol((dvi_integrator_q(integrator)[0] - q1) / h, 10 * (1 - sqrt(1 - g / 5)),
+                          1e-12);
+  dvi_integrator_destroy(&integrator);
+  dvi_system_destroy(&system);
 }
 END_TEST
 
@@ -141,6 +193,7 @@ SUITE(verlet)
   tcase_add_test(tests, a_step_is_kick_drift_kick);
   tcase_add_test(tests, a_step_costs_one_gradient_and_nothing_else);
   tcase_add_test(tests, a_step_with_linear_friction_evaluates_forces_twice);
+  tcase_add_test(tests, friction_has_the_velocity_of_short_steps);
   tcase_add_test(tests, a_general_lagrangian_is_refused_by_name);
   tcase_add_loop_test(tests, what_it_cannot_do_is_refused_by_name, 0, 9);
   tcase_add_test(tests, no_hessian_is_made_for_it);

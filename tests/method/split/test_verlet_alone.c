@@ -221,6 +221,29 @@ START_TEST(a_failure_is_that_of_swept_steps_and_leaves_no_trace)
 END_TEST
 
 /* No force supplies anything, in steps of all kinds. */
+/* Wherever the failure comes, the last step and its path are those of single steps. */
+START_TEST(a_run_that_fails_has_its_last_step)
+{
+  for (int steps = 31; steps < 36; steps++) {
+    couple c;
+    double quick[MOST], swept[MOST];
+    start_couple(&c, 3, 2, 1, "verlet");
+    c.chain.returned = 1;
+    c.chain.ill_after = 0.25 + 0.05 * (steps + 0.5);
+    const dvi_run_options run = {.h = 0.05, .t_end = 10};
+    ck_assert_int_eq(dvi_run(c.quick, &run, NULL), DVI_CALLBACK_RETRY);
+    ck_assert_int_eq(dvi_run(c.swept, &run, NULL), DVI_CALLBACK_RETRY);
+    check_same(&c);
+    const double h = dvi_integrator_last_step(c.swept), t = dvi_integrator_time(c.swept) - h / 3;
+    ck_assert(dvi_integrator_last_step(c.quick) == h);
+    ck_assert_int_eq(dvi_integrator_interpolate(c.quick, t, quick, NULL), DVI_OK);
+    ck_assert_int_eq(dvi_integrator_interpolate(c.swept, t, swept, NULL), DVI_OK);
+    ck_assert_mem_eq(quick, swept, 3 * sizeof(double));
+    destroy_couple(&c);
+  }
+}
+END_TEST
+
 START_TEST(balances_stay_zero)
 {
   static const char *const method[] = {"verlet", "verlet:blocking=temporal", "composition:order=4"};
@@ -261,6 +284,7 @@ SUITE(verlet_alone)
   tcase_add_loop_test(tests, bits_and_counts_are_those_of_swept_steps, 0, 4);
   tcase_add_loop_test(tests, a_run_has_the_bits_of_its_steps, 0, 2);
   tcase_add_loop_test(tests, a_failure_is_that_of_swept_steps_and_leaves_no_trace, 0, 10);
+  tcase_add_test(tests, a_run_that_fails_has_its_last_step);
   tcase_add_loop_test(tests, balances_stay_zero, 0, 3);
   tcase_add_loop_test(tests, a_restored_run_goes_on_with_the_same_bits, 0, 2);
 }

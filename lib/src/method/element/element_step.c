@@ -455,7 +455,7 @@ static void add_increments(int n, const dvi__element *own, dvi__state *state)
   }
 }
 
-dvi_status dvi__element_advance(dvi__stepper *self, dvi__state *state, double h)
+void dvi__element_advance(dvi__stepper *self, dvi__state *state, double h)
 {
   const dvi__element *own = self->own;
   element_keep_path(self, state->p);
@@ -466,7 +466,6 @@ dvi_status dvi__element_advance(dvi__stepper *self, dvi__state *state, double h)
                              state->supplied_compensation, own->supply);
   dvi__element_note_bending(self, h);
   self->memory[DVI__LAST_H] = h;
-  return DVI_OK;
 }
 
 static dvi_status element_ends(dvi__element *own, const double *Y)
@@ -558,7 +557,8 @@ dvi_status dvi__element_step(dvi__stepper *self, dvi__state *state, double h)
   dvi__action_forces(own->action, self->memory + dvi__element_forces(self));
   if (own->choice == DVI__SOLVER_CERTIFIED) DVI_TRY(element_certify(self, &at, own->Y, &report));
   DVI_TRY(element_supply(self, state));
-  return dvi__element_advance(self, state, h);
+  dvi__element_advance(self, state, h);
+  return DVI_OK;
 }
 
 void dvi__element_path(const dvi__stepper *self, const double *q0, double h, double tau, double *q,

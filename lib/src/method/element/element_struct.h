@@ -88,7 +88,7 @@ int dvi__element_shows_residuals(const dvi__element *own);
 void dvi__element_admit_march(dvi__stepper *self);
 
 /* Advance the state by the increments of a solved step, and keep its path. */
-dvi_status dvi__element_advance(dvi__stepper *self, dvi__state *state, double h);
+void dvi__element_advance(dvi__stepper *self, dvi__state *state, double h);
 
 /* Tell whether the rungs follow one after the other. */
 int dvi__element_is_ladder(const dvi__element *own);

@@ -24,6 +24,7 @@ struct dvi__friction {
   dvi__linear *matrix;          /* NULL if the pattern has the diagonal alone */
   double *values, *F_q, *F_v;   /* [entries] */
   double *residual, *given;     /* [n], residual or correction, and p0 - h/2 dV */
+  double *plain;                /* [n] the forces at M^-1 given */
 };
 
 /* ---- create ---- */
@@ -37,10 +38,11 @@ static dvi_status friction_allocate(dvi__friction *f)
   f->values = DVI_NEW(double, dvi__pattern_entries(&f->pattern));
   f->F_q = DVI_NEW(double, dvi__pattern_entries(&s->by_q));
   f->F_v = DVI_NEW(double, dvi__pattern_entries(&s->by_v));
-  f->residual = DVI_NEW(double, 2 * n);
+  f->residual = DVI_NEW(double, 3 * n);
   if (!f->mass_place || !f->by_v_place || !f->values || !f->F_q || !f->F_v || !f->residual)
     return dvi__fail(DVI_NO_MEMORY, "verlet: no memory for forces of %zu coordinates", n);
   f->given = f->residual + n;
+  f->plain = f->given + n;
   dvi__pattern_embed(&s->vv, &f->pattern, f->mass_place);
   dvi__pattern_embed(&s->by_v, &f->pattern, f->by_v_place);
   return DVI_OK;
@@ -172,7 +174,6 @@ static dvi_status find_velocity(dvi__friction *f, const dvi__state *state, doubl
 {
   const size_t n = (size_t)f->system->n;
   double change = HUGE_VAL, before = HUGE_VAL;
-  f->counters->newtons++;
   for (int iteration = 0; iteration < MOST_ITERATIONS; iteration++) {
     const double last = change;
     const int renew = iteration == 0 || !(last <= fast_change * before);
@@ -202,12 +203,48 @@ dvi_status dvi__friction_start(dvi__friction *f, const dvi__state *state, double
   return evaluate_force(f, state, &at);
 }
 
+/* Tell whether the kick by the forces is no larger than any momentum without it. Two velocities
+ * that solve the equation differ by their forces' kicks. One far from M^-1 p, near which that of
+ * short steps is, has a large kick. */
+static int is_gentle(const dvi__friction *f, double h, const double *F)
+{
+  for (int i = 0; i < f->system->n; i++)
+    if (fabs(0.5 * h * F[i]) > fabs(f->given[i])) return 0;
+  return 1;
+}
+
+/* Put v at M^-1 p, with its forces, if these differ from those of the solution at v by a large part
+ * of them. Where they do not, the large kick is one that hardly depends on v. */
+static dvi_status start_anew(dvi__friction *f, const dvi__state *state, const pushed *at, int *anew)
+{
+  const size_t n = (size_t)f->system->n;
+  double *v = f->residual, *F = f->plain;
+  dvi__mass_solve(f->evaluator, 1, f->given, v);
+  DVI_TRY(evaluate_force(f, state, &(pushed){F, v}));
+  double most = 0;
+  for (size_t i = 0; i < n; i++) most = fmax(most, fabs(F[i] - at->F[i]));
+  *anew = *anew || !(most <= 0.25 * dvi__largest(n, at->F));
+  if (!*anew) return DVI_OK;
+  memcpy(at->v, v, n * sizeof *v);
+  memcpy(at->F, F, n * sizeof *F);
+  return DVI_OK;
+}
+
+/* The last step's velocity is a guess near by where steps resolve the motion. Otherwise it may lead
+ * to another solution, or to none. Newton's method then begins without friction, as for short
+ * steps. */
 dvi_status dvi__friction_solve(dvi__friction *f, const dvi__state *state, double h,
                                const double *V_q, double *memory)
 {
   const pushed at = pushed_in(f, memory);
+  f->counters->newtons++;
   for (int i = 0; i < f->system->n; i++) f->given[i] = state->p[i] - 0.5 * h * V_q[i];
-  return find_velocity(f, state, h, &at);
+  const dvi_status status = find_velocity(f, state, h, &at);
+  int anew = status != DVI_OK;
+  if (status < DVI_OK && status != DVI_SINGULAR) return status;
+  if (status == DVI_OK && is_gentle(f, h, at.F)) return DVI_OK;
+  DVI_TRY(start_anew(f, state, &at, &anew));
+  return anew ? find_velocity(f, state, h, &at) : DVI_OK;
 }
 
 dvi_status dvi__friction_end(dvi__friction *f, const dvi__state *state, double *memory)

@@ -22,7 +22,15 @@ static void exchange_columns(int n, double *x, double *y)
   }
 }
 
-int dvi__small_invert(int n, double *A)
+/* Subtract a multiple of a column. */
+INLINE void subtract_multiple(int n, double factor, const double *x, double *y)
+{
+  int i = 0;
+  for (; i + BLOCK <= n; i += BLOCK) *(block *)(y + i) -= factor * *(const block *)(x + i);
+  for (; i < n; i++) y[i] -= factor * x[i];
+}
+
+WIDE static int small_invert(int n, double *A)
 {
   int from[MOST], sign = 1;
   for (int k = 0; k < n; k++) {
@@ -40,13 +48,18 @@ int dvi__small_invert(int n, double *A)
       const double factor = A[j * n + k];
       if (j == k) continue;
       A[j * n + k] = 0;
-      for (int i = 0; i < n; i++) A[j * n + i] -= factor * column[i];
+      subtract_multiple(n, factor, column, A + j * n);
     }
   }
   for (int k = n - 1; k >= 0; k--)
     for (int j = 0; j < n && from[k] != k; j++)
       exchange_columns(1, &A[j * n + k], &A[j * n + from[k]]);
   return sign;
+}
+
+int dvi__small_invert(int n, double *A)
+{
+  return small_invert(n, A);
 }
 
 int dvi__near_one_stride(int n)

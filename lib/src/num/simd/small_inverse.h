@@ -6,8 +6,8 @@
 /* Most columns. */
 enum { DVI__SMALL_INVERSE_MOST = 32 };
 
-/* Replace A [n*n] by its inverse, with exchanges. Gives the sign of its determinant, 0 if it is
- * singular. */
+/* Replace A [n*n], by columns or by rows, by its inverse, with exchanges. Gives the sign of its
+ * determinant, 0 if it is singular. */
 int dvi__small_invert(int n, double *A);
 
 /* Give the length of a column of a matrix that is near 1, which is whole blocks of numbers. */

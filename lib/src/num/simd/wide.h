@@ -1,6 +1,7 @@
 /* Functions that are compiled also for processors with wider vectors. The bits are the same. WIDE
- * is for static functions. The processor chooses when the program starts. gcc's thread sanitizer
- * cannot watch that yet. */
+ * is for static functions, whose names occur once in the library, because clang makes the choice
+ * between the versions global. The processor chooses when the program starts. gcc's thread
+ * sanitizer cannot watch that yet. */
 #ifndef DVI_NUM_SIMD_WIDE_H
 #define DVI_NUM_SIMD_WIDE_H
 

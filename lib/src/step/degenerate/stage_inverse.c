@@ -187,7 +187,7 @@ int dvi__stage_inverse_begin(dvi__stage_inverse *s, int count, const double *wei
 /* ---- solve ---- */
 
 /* Multiply by -Omega^-1 G^-1. */
-WIDE static void turn_rows(const dvi__stage_inverse *s, const double *r, double *x)
+WIDE static void turn_stage_rows(const dvi__stage_inverse *s, const double *r, double *x)
 {
   const int m = s->m, n = s->n;
   double back[MOST_UNKNOWNS * LANES];
@@ -206,7 +206,7 @@ WIDE static void turn_rows(const dvi__stage_inverse *s, const double *r, double 
 void dvi__stage_inverse_solve(dvi__stage_inverse *s, double *r)
 {
   double x[MOST_UNKNOWNS + LANES];
-  turn_rows(s, r, x);
+  turn_stage_rows(s, r, x);
   dvi__near_one_times(s->unknowns, s->inverse, x);
   memcpy(r, x, (size_t)s->unknowns * sizeof *r);
 }

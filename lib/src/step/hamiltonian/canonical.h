@@ -49,7 +49,7 @@ dvi_status dvi__canonical_residual(dvi__canonical *canonical, const double *x, d
 dvi_status dvi__canonical_jacobian(dvi__canonical *canonical, const double *x, double *values);
 dvi_status dvi__canonical_scale(dvi__canonical *canonical, double *scale);
 
-/* Fixed point iteration, for steps with as many points as degrees. Begin at the unknowns x,
+/* Fixed-point iteration, for steps with as many points as degrees. Begin at the unknowns x,
  * iterate, and write the unknowns of the last iteration. Each gives the largest change of an
  * increment at the points, and the largest increment, those of p in their units. */
 int dvi__canonical_has_iteration(const dvi__canonical *canonical);

@@ -5,16 +5,17 @@
 #include "step/joint.h"
 #include "space/basis.h"
 
-/* Fixed point iteration of a step with as many points as degrees. Rows of numbers at the points are
+/* Fixed-point iteration of a step with as many points as degrees. Rows of numbers at the points are
  * padded to `lanes` in the tables, whose columns stand one after the other. */
 typedef struct dvi__canonical_iteration {
   int lanes;
-  double *a, *adjoint; /* [r*lanes] coefficients of q and of p */
-  double *path;        /* [r*lanes] Y of slopes q' at the points */
-  double *dq, *dp;     /* [n*r] increments at the points */
-  double *sum;         /* [n*r] work */
-  double *q0, *p0;     /* [n*r] the start, at each point */
-  double *of_q, *of_p; /* [n*r] one over the units */
+  double *a, *adjoint;         /* [r*lanes] coefficients of q and of p */
+  double *path;                /* [r*lanes] Y of slopes q' at the points */
+  double *dq, *dp;             /* [n*r] increments at the points */
+  double *sum;                 /* [n*r] work */
+  double *q0, *p0;             /* [n*r] the start, at each point */
+  double *of_q, *of_p;         /* [n*r] one over the units */
+  double *weight_q, *weight_p; /* [n*r] of changes */
 } dvi__canonical_iteration;
 
 struct dvi__canonical {

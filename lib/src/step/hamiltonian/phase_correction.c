@@ -6,12 +6,12 @@
  *
  * where S is of the size of the step. Sweeps over S dW and S dD leave two small matrices,
  * sum_ij b_i P_l(c_i) a_ij P_l'(c_j) G_i X_phi_j of the moments and G X_phi/2 of the end. */
-#include <math.h>
 #include <string.h>
 
 #include "step/hamiltonian/rows.h"
 #include "step/hamiltonian/phase_struct.h"
 #include "core/status.h"
+#include "num/simd/small_inverse.h"
 #include "num/simd/wide.h"
 
 /* Sweeps over the stages, and over the end. A residual costs as much as two or three of them. */
@@ -71,62 +71,6 @@ static void fill_end(const dvi__phase_element *f, const dvi__phase_iteration *ow
                             sum_of_products(z, own->end_gradient + a * z, own->end_field + b * z);
 }
 
-/* Exchange `count` numbers of x and y, which are `stride` apart. */
-INLINE void exchange(int count, int stride, double *x, double *y)
-{
-  for (int i = 0; i < count * stride; i += stride) {
-    const double kept = x[i];
-    x[i] = y[i];
-    y[i] = kept;
-  }
-}
-
-/* Give the row from k on with the largest number in column k. */
-INLINE int row_of_pivot(int n, int k, const double *a)
-{
-  int at = k;
-  for (int i = k + 1; i < n; i++)
-    if (fabs(a[i * n + k]) > fabs(a[at * n + k])) at = i;
-  return at;
-}
-
-INLINE void subtract_row(int count, double factor, const double *x, double *y)
-{
-  int i = 0;
-  for (; i + BLOCK <= count; i += BLOCK) {
-    block row, from;
-    memcpy(&row, x + i, sizeof row);
-    memcpy(&from, y + i, sizeof from);
-    from -= factor * row;
-    memcpy(y + i, &from, sizeof from);
-  }
-  for (; i < count; i++) y[i] -= factor * x[i];
-}
-
-/* Replace a matrix by its inverse, by Gauss and Jordan in place, with exchanges of rows. Returns 0
- * if it has none. A product with an inverse of a few rows costs less than a solution. */
-WIDE static int invert(int n, double *a)
-{
-  int pivot[DVI__PHASE_ROWS_MOST] = {0};
-  for (int k = 0; k < n; k++) {
-    double *row = a + k * n;
-    pivot[k] = row_of_pivot(n, k, a);
-    exchange(n, 1, row, a + pivot[k] * n);
-    if (!(fabs(row[k]) > 0)) return 0;
-    const double inverse = 1 / row[k];
-    for (int j = 0; j < n; j++) row[j] *= inverse;
-    row[k] = inverse;
-    for (int i = 0; i < n; i++) {
-      const double factor = a[i * n + k];
-      if (i == k) continue;
-      subtract_row(n, factor, row, a + i * n);
-      a[i * n + k] = -factor * inverse;
-    }
-  }
-  for (int k = n - 1; k >= 0; k--) exchange(n, n, a + k, a + pivot[k]);
-  return 1;
-}
-
 dvi_status dvi__phase_freeze(dvi__phase_element *f)
 {
   dvi__phase_iteration *own = &f->iteration;
@@ -144,7 +88,8 @@ dvi_status dvi__phase_freeze(dvi__phase_element *f)
   spread_gradients(f, f->phi_z + f->d * gradients, 1, own->end_gradient, own->end_field);
   fill_end(f, own);
   if (f->k > 0) fill_moments_of(f);
-  if (!invert(f->m, own->end) || !invert(f->m * f->k, own->moments))
+  /* a product with an inverse of a few rows costs less than a solution */
+  if (dvi__small_invert(f->m, own->end) == 0 || dvi__small_invert(f->m * f->k, own->moments) == 0)
     return dvi__fail(DVI_NOT_CONVERGED, "a frozen matrix cannot be inverted");
   own->is_frozen = 1;
   return DVI_OK;
@@ -183,6 +128,7 @@ INLINE void correct_stages(const dvi__phase_element *f, const dvi__phase_iterati
   const int z = 2 * f->n, k = f->k, count = f->m * k;
   for (int sweep = 0; sweep <= SWEEPS; sweep++) {
     if (sweep > 0) set_base(own, z, lanes);
+    if (k == 0 && sweep == SWEEPS) break;
     const double *base = sweep > 0 ? own->base : own->of_W;
     for (int c = 0; c < z; c++)
       row_product(f->d, lanes, own->a, base + c * lanes, own->there + c * lanes);
@@ -232,7 +178,7 @@ static void correct_end(const dvi__phase_element *f)
     }
   }
   for (int c = 0; c < z; c++) own.of_D[c] = D[c];
-  for (int a = 0; a < m; a++) own.of_end[a] = own.multiplier[a];
+  memcpy(own.of_end, own.multiplier, (size_t)m * sizeof(double));
 }
 
 void dvi__phase_correct(dvi__phase_element *f)

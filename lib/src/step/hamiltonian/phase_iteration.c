@@ -9,14 +9,12 @@
 #include "num/finite.h"
 #include "num/simd/wide.h"
 
-enum { COORDINATES_MOST = 16 };
-
 /* ---- create ---- */
 
 int dvi__phase_element_has_iteration(const dvi__phase_element *f)
 {
   const int most = f->m * (f->k > 0 ? f->k : 1);
-  return f->n <= COORDINATES_MOST && most <= DVI__PHASE_ROWS_MOST;
+  return f->n <= DVI__PHASE_COORDINATES_MOST && most <= DVI__PHASE_ROWS_MOST;
 }
 
 static void fill_tables(const dvi__phase_element *f, const dvi__phase_iteration *own)
@@ -178,15 +176,11 @@ void dvi__phase_element_finish(const dvi__phase_element *f, double *x)
   memcpy(x, own->multipliers, (size_t)(f->m * (f->k + 1)) * sizeof *x);
 }
 
-static inline double larger(double x, double y)
-{
-  return x > y ? x : y;
-}
-
-/* The largest correction, unknown and coordinate of one kind, q or p. */
+/* The largest correction, unknown and coordinate of one kind, q or p, and the largest correction as
+ * a part of the unknowns of its coordinate, times the largest unknown. */
 typedef struct measure {
   largest is;
-  double size;
+  double size, own;
 } measure;
 
 /* Subtract corrections, in lanes. */
@@ -213,17 +207,35 @@ WIDE static void subtract_and_measure(int count, const double *correction, doubl
   add_largest(&lanes, most);
 }
 
+/* The least part of the largest motion as which a smaller one is measured. Changes of one that is
+ * smaller yet may be roundings of the others, which would look like an iteration that stalls. */
+static const double least_part = 0x1p-13;
+
+/* Measure the corrections of each coordinate as parts of its own unknowns. Otherwise one that moves
+ * much less than another would stop short of its own digits, by about the same in every step, and
+ * its energy would drift. */
 static void correct_kind(int n, int lanes, const double *start, const double *of_W,
                          const double *of_D, double *W, double *D, measure *kind)
 {
+  largest one[DVI__PHASE_COORDINATES_MOST] = {{0}};
   *kind = (measure){.size = dvi__largest((size_t)n, start)};
-  subtract_and_measure(n * lanes, of_W, W, &kind->is);
-  subtract_and_measure(n, of_D, D, &kind->is);
-  kind->size += kind->is.whole;
+  for (int i = 0; i < n; i++) {
+    subtract_and_measure(lanes, of_W + i * lanes, W + i * lanes, &one[i]);
+    subtract_and_measure(1, of_D + i, D + i, &one[i]);
+    kind->is.whole = larger(one[i].whole, kind->is.whole);
+    kind->is.change = larger(one[i].change, kind->is.change);
+  }
+  const double whole = kind->is.whole, least = least_part * whole;
+  for (int i = 0; i < n; i++) {
+    const double part = whole > 0 ? whole / larger(one[i].whole, least) : 1;
+    kind->own = larger(part * one[i].change, kind->own);
+  }
+  kind->size += whole;
 }
 
-/* Subtract the corrections, and measure those of p in a unit in which p is as large as q. */
-static void correct(dvi__phase_element *f, double *change, double *whole)
+/* Subtract the corrections, and measure those of p in a unit in which p is as large as q. *step is
+ * the largest correction, and *change the one that is large beside its own coordinate. */
+static void correct(dvi__phase_element *f, double *step, double *change, double *whole)
 {
   dvi__phase_iteration *own = &f->iteration;
   const int n = f->n, half = n * own->lanes;
@@ -238,7 +250,8 @@ static void correct(dvi__phase_element *f, double *change, double *whole)
   }
   const double unit = p.size / q.size, weight = isnormal(unit) && isnormal(1 / unit) ? 1 / unit : 1;
   *whole = larger(q.is.whole, weight * p.is.whole);
-  *change = larger(q.is.change, weight * p.is.change);
+  *step = larger(q.is.change, weight * p.is.change);
+  *change = larger(q.own, weight * p.own);
 }
 
 /* A correction of more than this part of the unknowns leaves its matrices so far behind that new
@@ -247,10 +260,11 @@ static const double near_guess = 1e-2;
 
 dvi_status dvi__phase_element_iterate(dvi__phase_element *f, double *change, double *whole)
 {
+  double step;
   DVI_TRY(set_residual(f));
   if (!f->iteration.is_frozen) DVI_TRY(dvi__phase_freeze(f));
   dvi__phase_correct(f);
-  correct(f, change, whole);
-  f->iteration.is_frozen = ++f->iteration.count > 1 || *change <= near_guess * *whole;
+  correct(f, &step, change, whole);
+  f->iteration.is_frozen = ++f->iteration.count > 1 || step <= near_guess * *whole;
   return DVI_OK;
 }

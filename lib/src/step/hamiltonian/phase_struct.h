@@ -13,7 +13,7 @@ typedef struct dvi__vector_field_places {
 } dvi__vector_field_places;
 
 /* Largest number of rows of a matrix in the iteration. */
-enum { DVI__PHASE_ROWS_MOST = 16 };
+enum { DVI__PHASE_ROWS_MOST = 16, DVI__PHASE_COORDINATES_MOST = 16 };
 
 /* Numbers of the iteration (phase_iteration.c). Rows of numbers at the stages have `lanes` numbers,
  * of which those behind the stages are 0. Matrices are those of the guess. */
@@ -33,7 +33,7 @@ typedef struct dvi__phase_iteration {
   double *slope;                      /* [entries][lanes] */
   double *end_gradient, *end_field;   /* [m][2n] */
   double *end_slope;                  /* [entries] */
-  double *base, *there, *change;      /* [2n][lanes] */
+  double *base, *there;               /* [2n][lanes] */
   int entries, *entry, *row, *column; /* entries of joint for two components of z */
   double *moments, *end;              /* [m*k][m*k] and [m][m], inverses by rows */
   double *multiplier;                 /* [m*(1+k)] */

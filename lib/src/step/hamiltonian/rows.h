@@ -24,6 +24,11 @@ typedef struct largest_lanes {
   block change, whole, not_finite;
 } largest_lanes;
 
+INLINE double larger(double x, double y)
+{
+  return x > y ? x : y;
+}
+
 /* Replace most by the magnitude of x where that is larger. */
 INLINE void take_larger(const block *x, block *most)
 {

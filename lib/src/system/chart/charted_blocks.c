@@ -1,7 +1,5 @@
 /* Products of tangents with the blocks of a matrix of stored coordinates, at several points side by
  * side. Each block is multiplied from the right once, for all that multiply it from the left. */
-#include <string.h>
-
 #include "core/memory.h"
 #include "core/status.h"
 #include "group/chart_lanes.h"
@@ -141,8 +139,7 @@ INLINE void add_product(const dvi__charted *x, const dvi__slot_block *block, dvi
   for (int a = 0; a < rows; a++) {
     lane sum[3] = {{0}};
     for (int i = 0; i < stored; i++) {
-      lane factor;
-      memcpy(&factor, from + (size_t)((i * rows + a) * DVI__GROUP), sizeof factor);
+      const lane factor = *(const dvi__lane_at *)(from + (size_t)((i * rows + a) * DVI__GROUP));
       for (int b = 0; b < columns; b++) sum[b] += factor * P[3 * i + b];
     }
     for (int b = 0; b < columns; b++) {
@@ -160,10 +157,15 @@ INLINE void add_row(int columns, const dvi__block_entry *entry, const lane *valu
                     const double *right, lane *P)
 {
   for (int b = 0; b < columns; b++) {
-    lane factor;
-    memcpy(&factor, right + (size_t)((entry->column * columns + b) * DVI__GROUP), sizeof factor);
-    P[3 * entry->row + b] += *value * factor;
+    const ptrdiff_t at = (ptrdiff_t)(entry->column * columns + b) * DVI__GROUP;
+    P[3 * entry->row + b] += *value * *(const dvi__lane_at *)(right + at);
   }
+}
+
+INLINE void clear_rows(const dvi__charted *x, const dvi__slot_block *block, lane *P)
+{
+  const int rows = dvi__chart_stored(x->base->slots[block->row].kind);
+  for (int i = 0; i < 3 * rows; i++) P[i] = (lane){0};
 }
 
 /* Compute P = M right of a block of the mass. */
@@ -171,7 +173,7 @@ INLINE void multiply_mass(const dvi__charted *x, const dvi__slot_block *block, c
                           const points *p, lane *P)
 {
   const double *from = rows_of(x, block->column, right, p);
-  memset(P, 0, 27 * sizeof *P);
+  clear_rows(x, block, P);
   for (int e = block[0].first; e < block[1].first; e++) {
     const dvi__block_entry *entry = &x->masses.entry[e];
     const lane value = x->base->mass_values[entry->entry] + (lane){0};
@@ -186,7 +188,7 @@ INLINE int multiply_potential(const dvi__charted *x, const dvi__slot_block *bloc
 {
   const double *from = rows_of(x, block->column, x->T, p);
   int found = 0;
-  memset(P, 0, 27 * sizeof *P);
+  clear_rows(x, block, P);
   for (int e = block[0].first; e < block[1].first; e++) {
     const dvi__block_entry *entry = &x->potentials.entry[e];
     lane value;

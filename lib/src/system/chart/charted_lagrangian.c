@@ -33,8 +33,8 @@ dvi__chart_nodes dvi__charted_nodes(const dvi__charted *x, int c, int count, int
                stored = (size_t)slot->q * (size_t)group;
   return (dvi__chart_nodes){.count = group,
                             .local = (size_t)count,
-                            .xi = xi + local,
-                            .rate = rate + local,
+                            .xi = xi != NULL ? xi + local : NULL,
+                            .rate = rate != NULL ? rate + local : NULL,
                             .functions = x->stumpff + DVI__NODE_FUNCTIONS * DVI__GROUP * c,
                             .y = x->y + stored,
                             .v = x->rate + stored,

@@ -200,7 +200,8 @@ void dvi__charted_gather(const dvi__factor_slot *slot, int count, int k, const d
 dvi_status dvi__charted_forces(dvi__charted *charted, int count, int first, int group,
                                const double *t, const double *xi, const double *rate);
 
-/* Give the numbers of slot c at a group of points that begins at point `first` of a batch. */
+/* Give the numbers of slot c at a group of points that begins at point `first` of a batch. xi and
+ * rate may be NULL if they are not read. */
 dvi__chart_nodes dvi__charted_nodes(const dvi__charted *charted, int c, int count, int first,
                                     int group, const double *xi, const double *rate);
 

@@ -84,10 +84,11 @@ void dvi__lagged_begin(dvi__lagged *l, int width, double ratio, const double *fa
 {
   const double scale = ratio * ratio;
   l->width = (size_t)width;
-  for (size_t k = 0; k < l->width; k++)
-    l->lag[k] = factors == NULL
-                    ? (lag){0}
-                    : (lag){.fast = scale * factors[k], .slow = scale * factors[l->width + k]};
+  memset(l->lag, 0, l->width * sizeof *l->lag);
+  for (size_t k = 0; k < l->width && factors != NULL; k++) {
+    l->lag[k].fast = scale * factors[k];
+    l->lag[k].slow = scale * factors[l->width + k];
+  }
 }
 
 void dvi__lagged_renew(dvi__lagged *l)
@@ -140,13 +141,13 @@ static void unpack(const dvi__lagged *l, size_t rows, size_t due, const double *
     for (size_t k = 0; k < due; k++) all[i * l->width + (size_t)l->lane[k]] = packed[i * due + k];
 }
 
-WIDE static void subtract(size_t count, double scale, const double *restrict x,
-                          const double *restrict y, double *restrict difference)
+WIDE static void subtract_forces(size_t count, double scale, const double *restrict x,
+                                 const double *restrict y, double *restrict difference)
 {
   for (size_t k = 0; k < count; k++) difference[k] = scale * (x[k] - y[k]);
 }
 
-WIDE static void add(size_t count, const double *restrict term, double *restrict sum)
+WIDE static void add_forces(size_t count, const double *restrict term, double *restrict sum)
 {
   for (size_t k = 0; k < count; k++) sum[k] += term[k];
 }
@@ -158,7 +159,7 @@ static void find_effects(dvi__lagged *l, const dvi__place_table *table)
   const size_t row = l->nodes * l->width;
   double *moved = l->places;
   for (size_t i = 0; i < (size_t)n; i++)
-    subtract(row, table->factor[i], l->next + i * row, l->slow + i * row, l->work + i * row);
+    subtract_forces(row, table->factor[i], l->next + i * row, l->slow + i * row, l->work + i * row);
   if (width == 1) {
     dvi__lanes_weigh(n, nodes, table->weight, l->work);
     dvi__lanes_product(n, nodes, table->lanes, nodes, table->matrix, l->work, moved);
@@ -222,7 +223,7 @@ dvi_status dvi__lagged_gradient(dvi__lagged *l, dvi__evaluator *evaluator, const
   const size_t due = list_due(l);
   if (due > 0) DVI_TRY(evaluate_slow(l, evaluator, due, t, q, table));
   DVI_TRY(dvi__some_gradients_untested(evaluator, 1, (int)(l->width * l->nodes), t, q, V_q));
-  add(l->rows * l->width, l->slow, V_q);
+  add_forces(l->rows * l->width, l->slow, V_q);
   return DVI_OK;
 }
 
