@@ -28,7 +28,6 @@
 #include <dvi/number.h>
 #include <dvi/path.h>
 #include <dvi/quadrature.h>
-#include <dvi/record.h>
 #include <dvi/reference.h>
 #include <dvi/regge.h>
 #include <dvi/rotations.h>

@@ -31,8 +31,8 @@ typedef struct dvi_counters {
   /** blocks of memory that the creation and the steps took. A step takes some only where it
    *  prepares a solver */
   long allocations;
-  /** solves by simplified Newton's method, with the Jacobian of one point, decoupled into systems
-   *  of n unknowns */
+  /** solves by simplified Newton's method, with the Jacobian of one point: decoupled into systems
+   *  of n unknowns, in charts by blocks, in dg-phase in small matrices */
   long simplified;
   /** steps that ended in a jump large against the motion (dg, dg-phase with alarm=warn) */
   long jump_alarms;

@@ -199,7 +199,9 @@ typedef struct dvi_potential {
    *  unless the system is autonomous. */
   int (*rate)(double t, const double *q, double *V_t, void *user);
   int (*rate_batch)(int count, const double *t, const double *q, double *V_t, void *user);
-  /** not 0 if the forces are stiff. Splitting methods treat them apart (docs/methods/imex.md) */
+  /** not 0 if the forces are stiff, or exceed those of other potentials by far. Splitting methods
+   *  treat them apart (docs/methods/imex.md). Fixed-point iteration evaluates the other potentials
+   *  less often, with the same solutions but for their last digits (docs/methods/galerkin.md) */
   int fast;
   /** not 0 if V = q.Kq/2 + b(t).q + c(t) with a constant K. dvi_system_check tests this */
   int quadratic;
@@ -328,8 +330,7 @@ typedef enum dvi_factor_kind {
   /** rigid motions, the nine entries of R, then the position x of the body's origin. v = (Omega,
    *  x'), with x' in the frame of space */
   DVI_SE3,
-  /** directions, a unit vector q. v = q' and its momentum p are three numbers, too, orthogonal to
-   *  q */
+  /** directions, a unit vector q. v = q' and its momentum p are three numbers, orthogonal to q */
   DVI_S2,
   DVI_U1 /**< angles, (cos, sin). v is the angular rate */
 } dvi_factor_kind;
@@ -382,8 +383,7 @@ typedef struct dvi_invariant {
  *  all kinds but a Hamiltonian. Forces and constraints may stand beside a mass and beside a general
  *  Lagrangian, but beside factors no nonholonomic ones. Contacts, noise: dvi/contact.h, noise.h. */
 typedef struct dvi_system_terms {
-  /** number of coordinates n, at least 1, even with a one-form. 0 with factors, which determine
-   *  n */
+  /** number n of coordinates, at least 1, even with a one-form. 0 with factors, which tell it */
   int dimension;
   dvi_mass mass;                    /**< a constant mass */
   const dvi_lagrangian *lagrangian; /**< a general Lagrangian */

@@ -1,6 +1,6 @@
 /* Recordings of runs. An observer of dvi_run keeps the rows, and events in front of those of the
  * program keep what they find. */
-#include <dvi/record.h>
+#include <dvi/run.h>
 
 #include <math.h>
 #include <stdio.h>

@@ -1,7 +1,7 @@
 /* The arrays of a recording, which grow row by row and event by event. */
 #ifndef DVI_RECORD_RECORDING_H
 #define DVI_RECORD_RECORDING_H
-#include <dvi/record.h>
+#include <dvi/run.h>
 
 enum { DVI__PARTS = 8 };
 
