@@ -21,7 +21,8 @@
  *      weld       d = 0, e_1.f_2 = 0, e_1.f_3 = 0, e_2.f_3 = 0 with frames e and f that coincide
  *      distance   (d.d - l^2)/2 = 0
  *
- *  All rows are quadratic in q. Joints that close a loop may be redundant (docs/constraints.md). */
+ *  All rows are quadratic in q. Joints that close a loop may be redundant
+ *  (docs/mechanics/constraints.md). */
 #ifndef DVI_JOINT_H
 #define DVI_JOINT_H
 #include <dvi/system.h>

@@ -278,7 +278,7 @@ typedef struct dvi_force {
  *
  *  With factors phi is a function of all stored coordinates, of any smooth continuation off the
  *  manifold, as potentials are. Rows may depend on others, if they do so all along the motion
- *  (docs/constraints.md). The callbacks have the one-point shape alone. */
+ *  (docs/mechanics/constraints.md). The callbacks have the one-point shape alone. */
 typedef struct dvi_holonomic {
   const char *name; /**< copied. Used in messages */
   int count;        /**< number of rows, at least 1 */
@@ -410,7 +410,8 @@ typedef struct dvi_system_terms {
   int nonholonomic_count;
   const struct dvi_contact *contacts; /**< contacts phi(t,q) >= 0 (dvi/contact.h; default none) */
   int contact_count;
-  double damping; /**< rate gamma >= 0 of uniform friction -gamma p, p = L_v (docs/forces.md) */
+  /** rate gamma >= 0 of uniform friction -gamma p, p = L_v (docs/mechanics/forces.md) */
+  double damping;
   const struct dvi_noise *noise; /**< a heat bath (dvi/noise.h; default none) */
 } dvi_system_terms;
 
