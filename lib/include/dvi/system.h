@@ -199,9 +199,9 @@ typedef struct dvi_potential {
    *  unless the system is autonomous. */
   int (*rate)(double t, const double *q, double *V_t, void *user);
   int (*rate_batch)(int count, const double *t, const double *q, double *V_t, void *user);
-  /** not 0 if the forces are stiff, or exceed those of other potentials by far. Splitting methods
-   *  treat them apart (docs/methods/imex.md). Fixed-point iteration evaluates the other potentials
-   *  less often, with the same solutions but for their last digits (docs/methods/galerkin.md) */
+  /** not 0 if the forces are stiff, or far above the others. Splitting methods treat them apart
+   *  (docs/methods/imex.md). Fixed-point iteration evaluates the others less often, with the same
+   *  solutions but for last digits (docs/methods/galerkin.md) */
   int fast;
   /** not 0 if V = q.Kq/2 + b(t).q + c(t) with a constant K. dvi_system_check tests this */
   int quadratic;
@@ -410,8 +410,7 @@ typedef struct dvi_system_terms {
   int nonholonomic_count;
   const struct dvi_contact *contacts; /**< contacts phi(t,q) >= 0 (dvi/contact.h; default none) */
   int contact_count;
-  /** rate gamma >= 0 of uniform friction -gamma p, p = L_v (docs/mechanics/forces.md) */
-  double damping;
+  double damping; /**< rate gamma >= 0 of friction -gamma p, p = L_v (docs/mechanics/forces.md) */
   const struct dvi_noise *noise; /**< a heat bath (dvi/noise.h; default none) */
 } dvi_system_terms;
 
