@@ -11,7 +11,8 @@ set -eu
 packages="gcc g++ libc6-dev make cmake pkg-config libsundials-dev libsuitesparse-dev liblapack-dev
   libarpack2-dev libyaml-dev check gnuplot-nox
   python3-dev python3-cffi python3-numpy python3-setuptools python3-pytest"
-lint_packages="clang clang-tidy clang-format cppcheck doxygen valgrind libc6-dbg libclang-rt-dev"
+lint_packages="clang clang-tidy clang-format cppcheck doxygen valgrind libc6-dbg libclang-rt-dev
+  esbuild"
 
 usage() {
   cat >&2 <<'END'
@@ -89,6 +90,13 @@ install_packages() {
   rm -f "$log"
 }
 
+# Installs a browser for the test of the pages of dvi view where there is a package of it, as on
+# Debian. Without it the test is skipped.
+install_browser() {
+  browser=chromium-headless-shell
+  if apt-cache show $browser >/dev/null 2>&1; then install_packages $browser; fi
+}
+
 # build PRESET [OPTION...]: configure and build; output only if it fails, or if there are warnings.
 build() {
   preset=$1
@@ -157,6 +165,7 @@ END
 # Runs the gates and valgrind on the build that users get, then all tests by clang with sanitizers.
 lint() {
   install_packages "$lint_packages"
+  install_browser
   status=0
   build lint
   run_tests lint || status=1

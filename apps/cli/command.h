@@ -34,6 +34,7 @@ int stability_command(int argc, char **argv);
 int solve_command(int argc, char **argv);
 int spectrum_command(int argc, char **argv);
 int plot_command(int argc, char **argv);
+int view_command(int argc, char **argv);
 
 /** Print "dvi: <sentence>" to standard error. */
 void complain(const char *format, ...) __attribute__((format(printf, 1, 2)));

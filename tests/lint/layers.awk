@@ -95,7 +95,8 @@ BEGIN {
   uses["study"] = "cli csv plot"
   uses["mechanics"] = uses["study"] " study load"
   uses["watch"] = uses["bench"] = uses["mechanics"] " mechanics"
-  uses["cmd"] = uses["watch"] " watch bench sweep boundary varied picture"
+  uses["view"] = "cli csv load picture"
+  uses["cmd"] = uses["watch"] " watch bench sweep boundary varied picture view"
   uses["main.c"] = "cli"
   # Single headers of other rooms that a room may include.
   also["reference solve/sundials_compat.h"] = 1
