@@ -127,7 +127,8 @@ dvi_status dvi_run(dvi_integrator *integrator, const dvi_run_options *options,
 /** Run an integrator to t_end as dvi_run, and record the run.
  *
  *  The run's own observer and events are called, too, after their row or event is kept. With
- *  `times` the observer is called after every `every` steps all the same.
+ *  `times` the observer is called after every `every` steps all the same. Without observer, events
+ *  and times, steps are taken together as in dvi_run, and `cancel` is looked at every 33 steps.
  *  @param      run        options of the run, with `every` for rows and observer
  *  @param      options    NULL for defaults
  *  @param[out] recording  owned by the caller. It has all rows up to a failure of the run, too.
