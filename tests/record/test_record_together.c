@@ -1,5 +1,6 @@
 /* labels: unit */
 /* Recordings of runs that take steps together have the rows of single steps. */
+#include <math.h>
 #include <string.h>
 
 #include "support/runs.h"
@@ -95,6 +96,44 @@ START_TEST(rows_cost_no_evaluations)
 }
 END_TEST
 
+/* One system has to search its velocity, and its derived numbers agree to a few roundings. */
+START_TEST(velocities_and_invariants_follow_from_recorded_states)
+{
+  const dvi_run_options run = {.h = 1. / H_PARTS, .t_end = 1};
+  int width = 0, count = 0;
+  double energy[H_PARTS + 1];
+  const dvi_record_options options = {.size = sizeof options,
+                                      .parts = DVI_RECORD_INVARIANTS | DVI_RECORD_V};
+  set_up_case(_i);
+  ck_assert_int_eq(dvi_record(walker, &run, &options, &recording), DVI_OK);
+  const double *value = dvi_recording_part(recording, DVI_RECORD_INVARIANTS, &width);
+  for (int k = 0; k <= H_PARTS; k++) energy[k] = value[k * width];
+  dvi_recording_destroy(&recording);
+  ck_assert_int_eq(dvi_record(runner, &run, NULL, &recording), DVI_OK);
+  ck_assert_int_eq(dvi_recording_derive(recording, DVI_RECORD_INVARIANTS | DVI_RECORD_V), DVI_OK);
+  value = dvi_recording_part(recording, DVI_RECORD_INVARIANTS, &count);
+  ck_assert_int_eq(count, width);
+  for (int k = 0; k <= H_PARTS; k++)
+    ck_assert_double_eq_tol(value[k * width], energy[k], 1e-14 * (1 + fabs(energy[k])));
+  (void)dvi_recording_part(recording, DVI_RECORD_V, &width);
+  ck_assert_int_eq(width, dvi_system_nv(model->system));
+}
+END_TEST
+
+START_TEST(nothing_follows_from_half_a_state)
+{
+  const dvi_run_options run = {.h = 1. / H_PARTS, .t_end = 1};
+  const dvi_record_options options = {.size = sizeof options, .parts = DVI_RECORD_Q};
+  set_up_case(0);
+  ck_assert_int_eq(dvi_record(runner, &run, &options, &recording), DVI_OK);
+  ck_assert_int_eq(dvi_recording_derive(recording, DVI_RECORD_V), DVI_BAD_ARGUMENT);
+  check_words("it has no coordinates or no momenta");
+  ck_assert_int_eq(dvi_recording_derive(recording, DVI_RECORD_STEP), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_recording_derive(NULL, DVI_RECORD_V), DVI_BAD_ARGUMENT);
+  ck_assert_ptr_null(dvi_recording_part(recording, DVI_RECORD_V, NULL));
+}
+END_TEST
+
 START_TEST(a_cancelled_run_has_a_row_for_each_step)
 {
   const volatile int cancel = 1;
@@ -114,5 +153,7 @@ SUITE(record_together)
   tcase_add_checked_fixture(tests, NULL, tear_down);
   tcase_add_loop_test(tests, rows_are_those_of_single_steps, 0, 3 * CASES);
   tcase_add_loop_test(tests, rows_cost_no_evaluations, 0, CASES);
+  tcase_add_loop_test(tests, velocities_and_invariants_follow_from_recorded_states, 0, CASES);
+  tcase_add_test(tests, nothing_follows_from_half_a_state);
   tcase_add_loop_test(tests, a_cancelled_run_has_a_row_for_each_step, 0, CASES);
 }

@@ -107,6 +107,7 @@ dvi_status dvi__recording_create(const dvi_system *system, unsigned parts, int64
 {
   dvi_recording *r = DVI_NEW(dvi_recording, 1);
   if (r == NULL) return dvi__fail(DVI_NO_MEMORY, "record: no memory for a recording");
+  r->system = system;
   r->nq = dvi_system_nq(system);
   r->nv = dvi_system_nv(system);
   for (int k = 0; k < DVI__PARTS; k++)

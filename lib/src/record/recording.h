@@ -28,6 +28,7 @@ struct dvi_recording {
   dvi_recorded_event *event; /* [event_room], whose q and v are set by dvi_recording_event */
   double *event_point;       /* [event_room*(nq+nv)] */
   int64_t events, event_room;
+  const dvi_system *system;
   int nq, nv;
   dvi_run_report report;
 };
