@@ -348,9 +348,9 @@ static dvi_status verlet_prepare_lanes(dvi__stepper *self, int capacity)
   const verlet *own = self->own;
   const int asked = self->settings.value[BLOCKING] == BLOCKING_TEMPORAL ||
                     self->settings.value[THREADS] > 1;
-  const int pays = own->friction == NULL && own->rattle == NULL &&
+  const int pays = own->friction == NULL &&
                    (own->blocking == NULL || (!asked && self->system->n <= FEW_COORDINATES));
-  return pays ? dvi__verlet_prepare_lanes(self, capacity) : DVI_OK;
+  return pays ? dvi__verlet_prepare_lanes(self, own->rattle, capacity) : DVI_OK;
 }
 
 static void verlet_explain(const dvi__stepper *self, dvi__text *text)
