@@ -19,7 +19,7 @@ typedef struct view_request {
   const char *out, *method, *scene, *rows, *title;
   double h, t_end;
   long frames;
-  words settings, fields, links;
+  words settings, fields, links, points;
 } view_request;
 
 static bool ends_with(const char *path, const char *ending)
@@ -99,7 +99,7 @@ static int take_scene(const view_request *r, const char *name, view_source *sour
     code = view_source_grids(source, files.grids, files.rows, r->frames, r->fields.count,
                              r->fields.word);
   else if (code == DONE)
-    code = view_source_rows(source, files.rows, r->frames);
+    code = view_source_rows(source, files.rows, r->frames, &r->points);
   view_files_remove(&files);
   return code;
 }
@@ -109,10 +109,11 @@ static int take_rows(const view_request *r, const char *path, view_source *sourc
   int code = refuse_of_run(r);
   if (code == DONE && r->rows != NULL)
     return usage_error("view: --rows is for .pvd files, and %s has rows itself", path);
-  if (code == DONE && r->scene == NULL && r->settings.count > 0)
-    return usage_error("view: --set is for scenes; give --scene");
+  if (code == DONE && r->scene == NULL && (r->settings.count > 0 || r->points.count > 0))
+    return usage_error("view: --%s is for scenes; give --scene",
+                       r->settings.count > 0 ? "set" : "point");
   if (code == DONE && r->scene != NULL) code = open_problem(r->scene, &r->settings, &source->scene);
-  return code == DONE ? view_source_rows(source, path, r->frames) : code;
+  return code == DONE ? view_source_rows(source, path, r->frames, &r->points) : code;
 }
 
 static int take_grids(const view_request *r, const char *path, view_source *source)
@@ -153,8 +154,9 @@ static int view_file(const view_request *r, const char *path)
   int code = check_request(r, path);
   if (code != DONE) return code;
   code = take_source(r, path, &source);
-  if (code == DONE && source.run.layout == NULL && r->links.count > 0)
-    code = usage_error("view: --link is for points, and fields have none");
+  if (code == DONE && source.run.layout == NULL && (r->links.count > 0 || r->points.count > 0))
+    code = usage_error("view: --%s is for points, and fields have none",
+                       r->links.count > 0 ? "link" : "point");
   if (code == DONE && source.run.layout != NULL && r->fields.count > 0)
     code = usage_error("view: --field is for fields, and %s has none", path);
   if (code == DONE) code = add_links(&r->links, &source.layout);
@@ -224,6 +226,11 @@ static const option command_options[] = {
      OPTION_AT(view_request, fields),
      .value = "NAME",
      .help = "a field to choose from, as u or E_z; may be repeated; default: the first few"},
+    {.name = "point",
+     OPTION_AT(view_request, points),
+     .value = "NAME",
+     .help = "draw a definition of the scene as a point; may be repeated; default: all, of a scene "
+             "without points"},
     {.name = "link",
      OPTION_AT(view_request, links),
      .value = "A:B",

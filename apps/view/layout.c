@@ -155,12 +155,11 @@ static int take_body(view_layout *layout, const names *n, int i)
   return taken;
 }
 
-static int take_angle(view_layout *layout, const names *n, int i, bool *good)
+static int take_angle(view_layout *layout, const names *n, int i)
 {
   size_t stem;
   if (!angle_at(n, i, &stem)) return 0;
   add_coordinates(layout, add_point(layout, name_of(n, i), stem), i, 2);
-  *good = layout_link(layout, VIEW_NONE, layout->points - 1);
   return 2;
 }
 
@@ -213,6 +212,7 @@ static bool take_numbers(view_layout *layout, const names *n)
   const int count = n->count < 3 ? n->count : 3;
   add_coordinates(layout, add_point(layout, "state", 5), 0, count);
   layout->is_plane = count < 3;
+  layout->is_state = true;
   return true;
 }
 
@@ -229,7 +229,7 @@ bool layout_find(int coordinates, word_at name_at, const void *list, view_layout
   for (int i = 0, taken; i < coordinates && good; i += taken > 0 ? taken : 1) {
     taken = take_body(layout, &n, i);
     if (taken == 0) taken = take_point(layout, &n, i);
-    if (taken == 0) taken = take_angle(layout, &n, i, &good);
+    if (taken == 0) taken = take_angle(layout, &n, i);
   }
   if (good && layout->points == 0 && layout->bodies == 0) good = take_numbers(layout, &n);
   if (!good) complain("out of memory");

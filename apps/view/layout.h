@@ -37,6 +37,7 @@ typedef struct view_layout {
   view_link *link;   /**< [links] */
   int *owner;        /**< [coordinates] the point that a coordinate moves, or VIEW_NONE */
   bool is_plane;     /**< all of it lies in the plane z = 0 */
+  bool is_state;     /**< there is one point alone, of the first numbers */
   bool is_chain;     /**< the points are numbers at equal distances */
 } view_layout;
 

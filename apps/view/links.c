@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "cli/command.h"
+#include "view/factors.h"
 
 /* Links of a point by forces, at most, on the average: a net in space has 3. Coordinates of a
  * matrix without a pattern, whose entries are looked at. */
@@ -169,24 +170,20 @@ static bool add_constraints(const problem *scene, const view_layout *layout, pai
 
 /* ---- directions ---- */
 
-static bool has_directions(const problem *scene)
+static bool has_directions(const problem *scene, const view_layout *layout)
 {
   bool has = false;
-  for (int k = 0; k < scene->terms->factor_count; k++)
-    has = has || scene->terms->factors[k].kind == DVI_S2 || scene->terms->factors[k].kind == DVI_U1;
+  for (int i = 0; i < scene->nq; i++)
+    has = has || (layout->owner[i] != VIEW_NONE && is_of_direction(scene, i));
   return has;
 }
 
 static bool link_directions(const problem *scene, view_layout *layout)
 {
-  static const int width[] = {[DVI_SO3] = 9, [DVI_SE3] = 12, [DVI_S2] = 3, [DVI_U1] = 2};
-  int q = 0;
-  for (int k = 0; k < scene->terms->factor_count; k++) {
-    const dvi_factor *factor = &scene->terms->factors[k];
-    if (factor->kind == DVI_S2 && layout->owner[q] != VIEW_NONE &&
-        !layout_link(layout, VIEW_NONE, layout->owner[q]))
-      return false;
-    q += factor->kind == DVI_RN ? factor->size : width[factor->kind];
+  for (int i = 0; i < scene->nq; i++) {
+    const int owner = layout->owner[i];
+    const bool begins = owner != VIEW_NONE && layout->point[owner].from[0] == i;
+    if (begins && is_of_direction(scene, i) && !layout_link(layout, VIEW_NONE, owner)) return false;
   }
   return true;
 }
@@ -196,7 +193,7 @@ bool links_find(const problem *scene, view_layout *layout)
   pairs held = {0}, forced = {0};
   const bool moves = scene->q != NULL && !layout->is_chain;
   bool good = !moves || (add_constraints(scene, layout, &held) && link_directions(scene, layout));
-  if (good && moves && !has_directions(scene)) good = add_forces(scene, layout, &forced);
+  if (good && moves && !has_directions(scene, layout)) good = add_forces(scene, layout, &forced);
   pairs_keep_distinct(&held);
   pairs_keep_distinct(&forced);
   good = good && link_pairs(&held, layout) &&

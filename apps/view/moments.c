@@ -1,6 +1,6 @@
 #include "view/moments.h"
 
-#include <string.h>
+#include "view/factors.h"
 
 /* Return an entry of a system's constant mass in the numbers of its coordinates. */
 static double mass_entry(const problem *scene, int row, int column)
@@ -13,19 +13,6 @@ static double mass_entry(const problem *scene, int row, int column)
   for (int e = mass->pattern.start[column]; e < mass->pattern.start[column + 1]; e++)
     if (mass->pattern.row[e] == row) return mass->values[e];
   return 0;
-}
-
-/* Return the factor whose coordinates begin at q, or NULL. */
-static const dvi_factor *factor_at(const problem *scene, int q)
-{
-  static const int width[] = {[DVI_SO3] = 9, [DVI_SE3] = 12, [DVI_S2] = 3, [DVI_U1] = 2};
-  int at = 0;
-  for (int k = 0; k < scene->terms->factor_count; k++) {
-    const dvi_factor *factor = &scene->terms->factors[k];
-    if (at == q) return factor;
-    at += factor->kind == DVI_RN ? factor->size : width[factor->kind];
-  }
-  return NULL;
 }
 
 /* Add the factor's own moments: with an inertia J those are tr(J)/2 I - J. */
@@ -44,7 +31,7 @@ static void find_moments(const problem *scene, const view_layout *layout, view_b
 {
   static const int entry[] = {0, 1, 2, 4, 5, 8};
   const int R = body->rotation;
-  const dvi_factor *factor = factor_at(scene, R);
+  const dvi_factor *factor = factor_of(scene, R);
   double first[3] = {0}, second[9];
   for (int k = 0; k < 9; k++) second[k] = mass_entry(scene, R + k / 3, R + k % 3);
   if (body->point != VIEW_NONE) {

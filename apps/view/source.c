@@ -6,8 +6,14 @@
 #include <string.h>
 
 #include "cli/command.h"
+#include "view/factors.h"
 #include "view/links.h"
 #include "view/moments.h"
+#include "view/places.h"
+
+/* Distances that change by less are those of rods. More points than these have no such links. */
+static const double RIGID = 1e-6;
+enum { RIGID_MOST = 32 };
 
 static int no_memory(void)
 {
@@ -145,9 +151,93 @@ static void choose_curves(view_source *s)
     if (!is_of_state(s, k)) s->run.curve[s->run.curves++] = k;
 }
 
+/* ---- points of definitions ---- */
+
+/* Return whether coordinates show where the system is in space: as points that are more than unit
+ * vectors, or as a chain. */
+static bool shows_places(const view_source *s)
+{
+  bool shows = s->layout.is_chain;
+  for (int k = 0; k < s->layout.points && !s->layout.is_state; k++)
+    shows = shows || !is_of_direction(s->scene, s->layout.point[k].from[0]);
+  return shows;
+}
+
+/* Take the definitions' points in place of unit vectors. Bodies and points of coordinates stay. */
+static int take_places(view_source *s, const words *points)
+{
+  int first;
+  const int code = places_add(s->scene, points, s->column, &s->table, &first);
+  if (code != DONE || first == s->table.columns) return code;
+  const size_t room = (size_t)s->names + (size_t)(s->table.columns - first) + 1;
+  const char **name = realloc(s->name, room * sizeof *name);
+  if (name != NULL) s->name = name;
+  int *column = realloc(s->column, room * sizeof *column);
+  if (column != NULL) s->column = column;
+  if (name == NULL || column == NULL) return no_memory();
+  for (int i = 0; i < s->scene->nq; i++)
+    if (is_of_direction(s->scene, i)) s->name[i] = "";
+  s->places = s->names;
+  for (int k = first; k < s->table.columns; k++) (void)take_name(s, s->table.column[k].name, k);
+  layout_clear(&s->layout);
+  return layout_find(s->names, name_at, s, &s->layout) ? DONE : FAILED;
+}
+
+/* Return a place of a point at a row. */
+static double place_at(const view_source *s, int point, int axis, int row)
+{
+  const int from = point != VIEW_NONE ? s->layout.point[point].from[axis] : VIEW_NONE;
+  if (from != VIEW_NONE) return s->table.column[s->column[from]].value[row];
+  return point != VIEW_NONE ? s->layout.point[point].fixed[axis] : 0;
+}
+
+/* Return whether two points stay at one distance, and turn about each other. */
+static bool is_rigid(const view_source *s, int a, int b)
+{
+  double least = HUGE_VAL, most = 0, turned = 0;
+  for (int row = 0; row < s->table.rows; row++) {
+    double square = 0, change = 0;
+    for (int k = 0; k < 3; k++) {
+      const double d = place_at(s, b, k, row) - place_at(s, a, k, row);
+      square += d * d;
+      change = fmax(change, fabs(d - place_at(s, b, k, 0) + place_at(s, a, k, 0)));
+    }
+    least = fmin(least, sqrt(square));
+    most = fmax(most, sqrt(square));
+    turned = fmax(turned, change);
+  }
+  return most - least <= RIGID * most && turned > RIGID * most;
+}
+
+/* Link points of definitions, and the origin, that stay at one distance, as if by a rod. */
+static bool link_rigid(view_source *s)
+{
+  const int points = s->layout.points;
+  int first = 0;
+  while (first < points && s->layout.point[first].from[0] < s->places) first++;
+  for (int b = first; b < points && points <= first + RIGID_MOST; b++) {
+    if (is_rigid(s, VIEW_NONE, b) && !layout_link(&s->layout, VIEW_NONE, b)) return false;
+    for (int a = first; a < b; a++)
+      if (is_rigid(s, a, b) && !layout_link(&s->layout, a, b)) return false;
+  }
+  return true;
+}
+
 /* ---- runs ---- */
 
-int view_source_rows(view_source *s, const char *path, long frames)
+/* Find what the coordinates of a scene mean, in space. */
+static int lay_out_scene(view_source *s, const words *points)
+{
+  int code = DONE;
+  moments_find(s->scene, &s->layout);
+  if (points->count > 0 || !shows_places(s)) code = take_places(s, points);
+  if (code != DONE) return code;
+  if (s->places == 0) return links_find(s->scene, &s->layout) ? DONE : FAILED;
+  moments_find(s->scene, &s->layout);
+  return link_rigid(s) ? DONE : no_memory();
+}
+
+int view_source_rows(view_source *s, const char *path, long frames, const words *points)
 {
   int code = read_table(s, path);
   if (code != DONE) return code;
@@ -162,13 +252,12 @@ int view_source_rows(view_source *s, const char *path, long frames)
   if (code != DONE) return code;
   if (s->names == 0) return usage_error("view: '%s' has no coordinates behind t", path);
   if (!layout_find(s->names, name_at, s, &s->layout)) return FAILED;
-  if (s->scene != NULL) {
-    moments_find(s->scene, &s->layout);
-    if (!links_find(s->scene, &s->layout)) return FAILED;
-  }
+  if (s->scene != NULL) code = lay_out_scene(s, points);
+  if (code != DONE) return code;
   choose_curves(s);
   s->run.layout = &s->layout;
   s->run.column = s->column;
+  s->run.time = s->table.column[find_column(&s->table, "t", 0)].value;
   s->run.frames = view_thin(s->table.rows, frames, &s->run.row);
   return s->run.frames > 0 ? DONE : no_memory();
 }

@@ -1,4 +1,4 @@
-/** The page and its program, which the build puts into the command (apps/view). */
+/** The page and its program, which the build puts into the command (apps/view/page). */
 #ifndef VIEW_TEXTS_H
 #define VIEW_TEXTS_H
 #include "load/catalogue.h"

@@ -2,7 +2,7 @@
 # The program of the pages of dvi view is the bundle of its sources, byte by byte. Skipped without
 # npm, its registry, and the version of esbuild that made the bundle.  Usage: view_bundle.sh TOP
 set -u
-view=$1/apps/view
+view=$1/apps/view/page
 version=0.17.0
 command -v npm >/dev/null || { echo 'skipped: no npm'; exit 77; }
 command -v esbuild >/dev/null || { echo 'skipped: no esbuild'; exit 77; }
@@ -18,7 +18,6 @@ if ! sh "$view/bundle.sh" "$work/program.js" 2>"$work/log"; then
   exit 1
 fi
 cmp "$work/program.js" "$view/bundle/program.js" || {
-  echo 'apps/view/bundle/program.js is not made of its sources: run sh apps/view/bundle.sh' \
-    'apps/view/bundle/program.js'
+  echo 'bundle/program.js is not made of its sources: run sh apps/view/page/bundle.sh'
   exit 1
 }

@@ -31,7 +31,7 @@
     const stage = element("stage"), box = stage.getBoundingClientRect();
     const at = (type, x) => stage.dispatchEvent(new PointerEvent(type, { bubbles: true,
       pointerId: 1, pointerType: "mouse", button: 0, buttons: 1,
-      clientX: box.left + 200 + x, clientY: box.top + 150 }));
+      clientX: box.left + 100 + x, clientY: box.top + 100 }));
     stage.setPointerCapture = stage.releasePointerCapture = () => {};
     at("pointerdown", 0);
     at("pointermove", 60);

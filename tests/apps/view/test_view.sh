@@ -42,6 +42,22 @@ holds chain.html '"links":[[0,1],[1,2]]' 'a chain'
 expect 0 'a number' view "$scenes/pendulum.yaml" --out pendulum.html --t-end 1
 holds pendulum.html '"points":["state"]' 'a number and its momentum'
 
+# Definitions are points where coordinates are none.
+expect 0 'angles' view "$scenes/double-pendulum.yaml" --out double.html --t-end 2
+holds double.html '"points":["upper","lower"]' 'definitions'
+holds double.html '"links":[[-1,0],[0,1]]' 'rods'
+expect 0 'directions' view "$scenes/bodies/spherical-double-pendulum.yaml" --out two.html --t-end 1
+holds two.html '"points":["first","second"]' 'definitions in place of directions'
+expect 0 'a top' view "$scenes/bodies/heavy-top.yaml" --out top.html --t-end 0.1
+holds top.html '"points":["centre"]' 'a body and a definition'
+holds top.html '"bodies":[{"name":"R","point":-1,"moments":{"mass":0,' 'a body and a definition'
+expect 0 'one of them' view "$scenes/double-pendulum.yaml" --out lower.html --t-end 2 --point lower
+holds lower.html '"points":["lower"]' 'one of them'
+holds lower.html '"links":[],' 'a distance that changes is none of a rod'
+expect 2 'no such definition' view "$scenes/double-pendulum.yaml" --out x.html --point lowr
+says err "\-\-point lowr: .*(did you mean 'lower'?)" 'no such definition'
+expect 2 'a definition of the catalogue' view kepler --method verlet --out x.html --point lower
+
 # Files of runs give the page of the scene.
 columns=q_1_x,q_1_y,q_1_z,q_2_x,q_2_y,q_2_z,q_3_x,q_3_y,q_3_z,energy
 expect 0 'a run' run rods.yaml --out rods.csv --columns "$columns"
@@ -99,6 +115,8 @@ expect 2 'no such point' view rods.csv --link q_1:q_4 --out x.html
 says err "no point 'q_4' (did you mean 'q_1'?)" 'no such point'
 expect 2 'half a link' view rods.csv --link q_1 --out x.html
 expect 2 'links of fields' view wave.pvd --link a:b --out x.html
+expect 2 'a point of rows alone' view rods.csv --point q --out x.html
+says err '\-\-point is for scenes; give --scene' 'a point of rows alone'
 expect 2 'no such field' view wave.pvd --field v --out x.html
 says err "no field 'v' among" 'no such field'
 expect 2 'fields of points' view rods.csv --field u --out x.html

@@ -22,7 +22,7 @@ press() {
     echo '</script></body>'
   } >pressed.html
   timeout 60 "$browser" --headless --no-sandbox --use-angle=swiftshader \
-    --enable-unsafe-swiftshader --window-size=1000,640 --dump-dom \
+    --enable-unsafe-swiftshader --window-size=700,400 --dump-dom \
     "file://$folder/pressed.html" >dom 2>log
   sed -n '/<pre id="report">/,$s/.*<pre id="report">//; /<\/pre>/,$s/<\/pre>.*//
           /^[a-z][a-z ]*: /p' dom >seen

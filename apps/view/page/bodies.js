@@ -15,7 +15,7 @@ function shapeMatrix({ spread, vectors: e }, centre, factor) {
 }
 
 function makeBody(body, k, size) {
-  const group = new Group(), axes = principalAxes(body.moments, 0.3 * size);
+  const group = new Group(), axes = principalAxes(body.moments, 0.2 * size);
   const material = new MeshStandardMaterial({ color: colourOfPoint(k), roughness: 0.6 });
   const shapes = {
     box: new Mesh(new BoxGeometry(2, 2, 2), material),
@@ -27,7 +27,7 @@ function makeBody(body, k, size) {
     mesh.matrix.copy(shapeMatrix(axes, body.moments.centre, factor[name]));
     group.add(mesh);
   }
-  group.add(new AxesHelper(1.4 * factor.ellipsoid * Math.max(...axes.spread)));
+  group.add(new AxesHelper(1.25 * factor.box * Math.max(...axes.spread)));
   group.matrixAutoUpdate = false;
   return { group, shapes };
 }

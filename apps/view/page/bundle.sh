@@ -1,6 +1,6 @@
 #!/bin/sh
-# Bundles the program of the pages, apps/view/*.js and the three.js that package-lock.json names, to
-# one file.  Usage: bundle.sh FILE.js
+# Bundles the program of the pages, apps/view/page/*.js and the three.js that package-lock.json
+# names, to one file, that of bundle/ by default.  Usage: bundle.sh [FILE.js]
 # It needs npm and esbuild 0.17. The same sources give the same bytes.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
@@ -10,7 +10,7 @@ cp "$here"/*.js "$here"/package.json "$here"/package-lock.json "$work"
 (
   cd "$work"
   npm ci --ignore-scripts --no-audit --no-fund >npm.log 2>&1 || { cat npm.log >&2; exit 1; }
-  cmp -s node_modules/three/LICENSE "$here/../../LICENSES/three.js.txt" || {
+  cmp -s node_modules/three/LICENSE "$here/../../../LICENSES/three.js.txt" || {
     echo "bundle.sh: LICENSES/three.js.txt is not the licence of this three.js" >&2
     exit 1
   }
@@ -24,4 +24,4 @@ if grep -qi '</script' "$work/bundle.js"; then
   echo "bundle.sh: the bundle has an end tag, which would end it within a page" >&2
   exit 1
 fi
-cp "$work/bundle.js" "$1"
+cp "$work/bundle.js" "${1:-$here/bundle/program.js}"
