@@ -129,7 +129,7 @@ double dvi__solver_worst_ratio(const dvi__solver *solver, double least, const do
     const size_t count = (size_t)(first + group < unknowns ? group : unknowns - first);
     const double one = dvi__largest(count, of + first),
                  other = fmax(dvi__largest(count, to + first), least);
-    if (one > worst * other) worst = other > 0 ? one / other : HUGE_VAL;
+    worst = dvi__worse_ratio(worst, one, other);
   }
   return worst;
 }
