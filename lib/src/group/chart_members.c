@@ -44,7 +44,7 @@ INLINE double place_kind(const dvi__chart_members *charts, dvi__chart_kind kind,
   return 0;
 }
 
-WIDE static double place_members(const dvi__chart_members *charts, const dvi__chart_nodes *n)
+WIDE static double place_in_charts(const dvi__chart_members *charts, const dvi__chart_nodes *n)
 {
   switch (charts->kind) {
   case DVI__LINE: return place_kind(charts, DVI__LINE, n);
@@ -57,7 +57,7 @@ WIDE static double place_members(const dvi__chart_members *charts, const dvi__ch
 
 double dvi__chart_place_members(const dvi__chart_members *charts, const dvi__chart_nodes *nodes)
 {
-  return place_members(charts, nodes);
+  return place_in_charts(charts, nodes);
 }
 
 /* ---- derivatives ---- */
@@ -94,13 +94,14 @@ INLINE void move_by(const dvi__chart_members *charts, int even, const double *in
   }
 }
 
-WIDE static void differentiate_members(const dvi__chart_members *charts, const dvi__chart_nodes *n)
+WIDE static void differentiate_in_charts(const dvi__chart_members *charts,
+                                         const dvi__chart_nodes *n)
 {
   move_by(charts, 0, NULL, n);
 }
 
-WIDE static void move_members(const dvi__chart_members *charts, const double *inertia,
-                              const dvi__chart_nodes *n)
+WIDE static void move_in_charts(const dvi__chart_members *charts, const double *inertia,
+                                const dvi__chart_nodes *n)
 {
   move_by(charts, 1, inertia, n);
 }
@@ -109,9 +110,9 @@ void dvi__chart_move_members(const dvi__chart_members *charts, const double *ine
                              const dvi__chart_nodes *nodes)
 {
   if (inertia != NULL)
-    move_members(charts, inertia, nodes);
+    move_in_charts(charts, inertia, nodes);
   else
-    differentiate_members(charts, nodes);
+    differentiate_in_charts(charts, nodes);
 }
 
 /* ---- ends of paths ---- */
@@ -218,7 +219,7 @@ INLINE void correct_kind(const dvi__chart_members *charts, dvi__chart_kind kind,
   }
 }
 
-WIDE static void correct_members(const dvi__chart_members *charts, const dvi__chart_paths *paths)
+WIDE static void correct_in_charts(const dvi__chart_members *charts, const dvi__chart_paths *paths)
 {
   if (charts->kind == DVI__ROTATION)
     correct_kind(charts, DVI__ROTATION, paths);
@@ -228,5 +229,5 @@ WIDE static void correct_members(const dvi__chart_members *charts, const dvi__ch
 
 void dvi__chart_correct_members(const dvi__chart_members *charts, const dvi__chart_paths *paths)
 {
-  correct_members(charts, paths);
+  correct_in_charts(charts, paths);
 }

@@ -253,25 +253,25 @@ INLINE void add_products(size_t width, const double *restrict column, const doub
   for (size_t k = 0; k < width; k++) sum[k] += column[k] * by[k];
 }
 
-WIDE static void solve_members(const dvi__blocks *blocks, size_t width, const double *A, double *R,
-                               double *sum)
+WIDE static void solve_members(const dvi__blocks *blocks, size_t width, size_t stride,
+                               const double *A, double *R, double *sum)
 {
   for (int b = 0; b < blocks->count; b++) {
     const int m = blocks->first[b + 1] - blocks->first[b],
               *unknown = blocks->unknown + blocks->first[b];
     memset(sum, 0, (size_t)m * width * sizeof *sum);
     for (int j = 0; j < m; j++)
-      for (int i = 0; i < m; i++, A += width)
+      for (int i = 0; i < m; i++, A += stride)
         add_products(width, A, R + (size_t)unknown[j] * width, sum + (size_t)i * width);
     for (int i = 0; i < m; i++)
       memcpy(R + (size_t)unknown[i] * width, sum + (size_t)i * width, width * sizeof *sum);
   }
 }
 
-void dvi__blocks_solve_members(const dvi__blocks *blocks, int width, const double *inverses,
-                               double *R, double *work)
+void dvi__blocks_solve_members(const dvi__blocks *blocks, int width, int stride,
+                               const double *inverses, double *R, double *work)
 {
-  solve_members(blocks, (size_t)width, inverses, R, work);
+  solve_members(blocks, (size_t)width, (size_t)stride, inverses, R, work);
 }
 
 size_t dvi__blocks_inverses(const dvi__blocks *blocks)

@@ -18,7 +18,7 @@
 
 /* Members are taken together in groups of this size, so that their numbers stay in the nearest
  * cache, and few wait for the slowest of them. */
-enum { GROUP = 16 };
+enum { GROUP = 32 };
 
 /* Numbers of a group have rows of `width`, which is their number. */
 typedef struct lanes {
@@ -36,8 +36,10 @@ typedef struct lanes {
   double *kicks;                      /* rows [nx], the momenta added to each solution */
   double *guess, *solution;           /* rows [nx*s] */
   double *inverses;                   /* rows of the blocks' inverses */
-  double *state, *memory;             /* one member's q, p and compensations [4 n], and memory */
-  double *numbers;                    /* the memory of all these arrays */
+  const double *inverse;              /* those in use, whose rows are `stride` apart */
+  int stride;
+  double *state, *memory; /* one member's q, p and compensations [4 n], and memory */
+  double *numbers;        /* the memory of all these arrays */
 } lanes;
 
 static dvi__charted_step_of *step_of(const dvi__stepper *self)
@@ -57,11 +59,16 @@ static size_t inverses_of(const dvi__element *element)
 
 /* ---- create ---- */
 
-static int has_lanes(const dvi__stepper *self)
+/* Fewer members do not fill a vector. The inverses of larger blocks leave the caches, and making
+ * them takes most of the time. */
+enum { FEWEST = 4, MOST_INVERSES = 2048 };
+
+static int has_lanes(const dvi__stepper *self, int capacity)
 {
   const dvi__element *element = element_of(self);
-  return element->choice == DVI__SOLVER_AUTO && element->blocks != NULL &&
-         self->system->damping == 0 && dvi__action_forces_count(element->action) == 0 &&
+  return capacity >= FEWEST && element->choice == DVI__SOLVER_AUTO && element->blocks != NULL &&
+         inverses_of(element) <= MOST_INVERSES && self->system->damping == 0 &&
+         dvi__action_forces_count(element->action) == 0 &&
          dvi__charted_has_members(step_of(self)->charted);
 }
 
@@ -116,8 +123,7 @@ static size_t share_out(const dvi__stepper *self, lanes *own)
 
 dvi_status dvi__charted_step_prepare_lanes(dvi__stepper *self, int capacity)
 {
-  (void)capacity; /* any number of members goes in groups */
-  if (!has_lanes(self)) return DVI_OK;
+  if (!has_lanes(self, capacity)) return DVI_OK;
   lanes *own = self->lanes = DVI_NEW(lanes, 1);
   if (own != NULL) own->numbers = DVI_NEW(double, share_out(self, own));
   if (own == NULL || own->numbers == NULL)
@@ -265,6 +271,24 @@ static void begin_iteration(lanes *own)
   memset(own->renewed, 0, sizeof own->renewed);
 }
 
+/* Neighbours have their inverses in the block's numbers. */
+static void find_inverses(const dvi__stepper *self, const dvi__members *m)
+{
+  lanes *own = self->lanes;
+  const dvi__blocks *blocks = element_of(self)->blocks;
+  const int first = own->member[0];
+  const double *from = memory_row(m, dvi__element_blocks_part(&step_of(self)->inner) +
+                                         DVI__FROZEN_POINT + dvi__blocks_inverses(blocks));
+  if (own->member[own->width - 1] == first + own->width - 1) {
+    own->inverse = from + first;
+    own->stride = m->count;
+    return;
+  }
+  read_rows(own, m, inverses_of(element_of(self)), from, own->inverses);
+  own->inverse = own->inverses;
+  own->stride = own->width;
+}
+
 static void begin_group(dvi__stepper *self, dvi__members *m, double h)
 {
   lanes *own = self->lanes;
@@ -281,14 +305,13 @@ static void begin_group(dvi__stepper *self, dvi__members *m, double h)
   guess_paths(self, m);
   for (int k = 0; k < own->width; k++)
     if (memory_row(m, part + DVI__FROZEN_H)[own->member[k]] != h) renew_blocks(self, m, h, k);
-  read_rows(own, m, inverses_of(element),
-            memory_row(m, part + DVI__FROZEN_POINT + dvi__blocks_inverses(element->blocks)),
-            own->inverses);
+  find_inverses(self, m);
 }
 
 /* ---- iterations ---- */
 
-/* Find ends of paths as dvi__action_place_terms, and h sum_j b_j L_q as dvi__action_add_term_rows. */
+/* Find ends of paths as dvi__action_place_terms, and h sum_j b_j L_q as
+ * dvi__action_add_term_rows. */
 WIDE static void find_ends(const dvi__members_chord *c, double *restrict end, double *restrict dp)
 {
   const size_t width = (size_t)c->width;
@@ -325,8 +348,8 @@ static dvi_status iterate_group(const dvi__stepper *self)
   dvi__charted_members_correct(own->charted, loops->h, loops->weight, own->end, own->p0, own->dp,
                                own->C);
   subtract_corrections(loops, own->C);
-  dvi__blocks_solve_members(element_of(self)->blocks, own->width, own->inverses, loops->R,
-                            loops->rows);
+  dvi__blocks_solve_members(element_of(self)->blocks, own->width, own->stride, own->inverse,
+                            loops->R, loops->rows);
   dvi__members_chord_subtract(loops);
   return DVI_OK;
 }
@@ -505,13 +528,20 @@ static void end_member(const dvi__stepper *self, dvi__members *m, double h, int 
 
 /* ---- step ---- */
 
+/* Give the size of groups of about the same size, in whole vectors. */
+static int group_size(int count)
+{
+  const int groups = (count - 1) / GROUP + 1, vectors = (count - 1) / groups / FEWEST + 1;
+  return vectors * FEWEST;
+}
+
 /* Fill the group from member `next` on. Leaves those without a last step of this length, and those
  * that wait for the blocks to be tried again. Returns the first member behind the group. */
 static int choose_group(lanes *own, dvi__members *m, double h, int next)
 {
   const double *last_h = memory_row(m, DVI__LAST_H), *steps = memory_row(m, DVI__NEWTON_STEPS);
   own->width = 0;
-  for (; next < m->count && own->width < GROUP; next++) {
+  for (const int most = group_size(m->count); next < m->count && own->width < most; next++) {
     if (last_h[next] != h || steps[next] != 0) m->left[next] = 1;
     if (!m->left[next]) own->member[own->width++] = next;
   }

@@ -5,8 +5,8 @@
 
 typedef struct dvi__charted_members dvi__charted_members;
 
-/* Tell whether a charted system has such charts, as it has without forces, constraints and a reduced
- * Lagrangian. */
+/* Tell whether a charted system has such charts, as it has without forces, constraints and a
+ * reduced Lagrangian. */
 int dvi__charted_has_members(const dvi__charted *charted);
 
 /* Create charts of up to `capacity` members, for paths with `nodes` points, after
