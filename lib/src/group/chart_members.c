@@ -3,30 +3,32 @@
 #include "group/chart_point.h"
 #include "num/simd/wide.h"
 
-static int some_of(int count, int first)
+/* Give the first member of a vector that should begin with member k. The last vector overlaps the
+ * one before, and finds the same numbers again. */
+static int first_of(int width, int k)
 {
-  return count - first < DVI__LANES ? count - first : DVI__LANES;
+  return k + DVI__LANES <= width ? k : width - DVI__LANES;
 }
 
-INLINE void read_centres(const dvi__chart_members *charts, dvi__chart_kind kind, int k, int some,
-                         centres *at)
+INLINE void read_centres(const dvi__chart_members *charts, dvi__chart_kind kind, int k, centres *at)
 {
   const size_t width = (size_t)charts->width;
-  load_rows(dvi__chart_stored(kind), charts->y0 + k, width, some, at->y0);
+  load_rows(dvi__chart_stored(kind), charts->y0 + k, width, DVI__LANES, at->y0);
   if (kind == DVI__CIRCLE || kind == DVI__SPHERE)
-    load_rows(3, charts->basis + k, width, some, at->basis[0]);
-  if (kind == DVI__SPHERE) load_rows(3, charts->basis + 3 * width + k, width, some, at->basis[1]);
+    load_rows(3, charts->basis + k, width, DVI__LANES, at->basis[0]);
+  if (kind == DVI__SPHERE)
+    load_rows(3, charts->basis + 3 * width + k, width, DVI__LANES, at->basis[1]);
 }
 
 /* ---- points ---- */
 
 INLINE double place_from(const dvi__chart_members *charts, dvi__chart_kind kind,
-                         const dvi__chart_nodes *n, int k, int some)
+                         const dvi__chart_nodes *n, int k)
 {
   centres at;
-  read_centres(charts, kind, k, some, &at);
+  read_centres(charts, kind, k, &at);
   for (int first = k; first < n->count; first += charts->width) {
-    const double beyond = place_some(&at, kind, n, first, some);
+    const double beyond = place_some(&at, kind, n, first, DVI__LANES);
     if (beyond != 0) return beyond;
   }
   return 0;
@@ -36,9 +38,7 @@ INLINE double place_kind(const dvi__chart_members *charts, dvi__chart_kind kind,
                          const dvi__chart_nodes *n)
 {
   for (int k = 0; k < charts->width; k += DVI__LANES) {
-    const int some = some_of(charts->width, k);
-    const double beyond = some == DVI__LANES ? place_from(charts, kind, n, k, DVI__LANES)
-                                             : place_from(charts, kind, n, k, some);
+    const double beyond = place_from(charts, kind, n, first_of(charts->width, k));
     if (beyond != 0) return beyond;
   }
   return 0;
@@ -63,24 +63,19 @@ double dvi__chart_place_members(const dvi__chart_members *charts, const dvi__cha
 /* ---- derivatives ---- */
 
 INLINE void move_from(const dvi__chart_members *charts, dvi__chart_kind kind, int even,
-                      const double *inertia, const dvi__chart_nodes *n, int k, int some)
+                      const double *inertia, const dvi__chart_nodes *n, int k)
 {
   centres at;
-  read_centres(charts, kind, k, some, &at);
+  read_centres(charts, kind, k, &at);
   for (int first = k; first < n->count; first += charts->width)
-    differentiate_some(&at, kind, even, inertia, n, first, some);
+    differentiate_some(&at, kind, even, inertia, n, first, DVI__LANES);
 }
 
 INLINE void move_kind(const dvi__chart_members *charts, dvi__chart_kind kind, int even,
                       const double *inertia, const dvi__chart_nodes *n)
 {
-  for (int k = 0; k < charts->width; k += DVI__LANES) {
-    const int some = some_of(charts->width, k);
-    if (some == DVI__LANES)
-      move_from(charts, kind, even, inertia, n, k, DVI__LANES);
-    else
-      move_from(charts, kind, even, inertia, n, k, some);
-  }
+  for (int k = 0; k < charts->width; k += DVI__LANES)
+    move_from(charts, kind, even, inertia, n, first_of(charts->width, k));
 }
 
 INLINE void move_by(const dvi__chart_members *charts, int even, const double *inertia,
@@ -165,13 +160,13 @@ INLINE void direction_momentum(const centres *at, const lane *c, const lane *xi,
 
 /* Compute mu1 - mu0 of a rotation in the centre's frame, and of a direction in space. */
 INLINE void find_impulse(const centres *at, dvi__chart_kind kind, const dvi__chart_paths *paths,
-                         size_t width, int k, int some, lane *impulse)
+                         size_t width, int k, lane *impulse)
 {
   lane N, in_space[3], turned[3];
   for (int i = 0; i < 3; i++) {
     in_space[i] = (lane){0};
     for (int j = 0; j < paths->nodes; j++) {
-      load_rows(1, paths->moment + (size_t)(i * paths->nodes + j) * width + k, 0, some, &N);
+      load_rows(1, paths->moment + (size_t)(i * paths->nodes + j) * width + k, 0, DVI__LANES, &N);
       in_space[i] += paths->h * paths->weight[j] * N;
     }
   }
@@ -180,20 +175,21 @@ INLINE void find_impulse(const centres *at, dvi__chart_kind kind, const dvi__cha
     impulse[i] = (lane){0} + (kind == DVI__ROTATION ? turned[i] : in_space[i]);
 }
 
-INLINE void correct_some(const dvi__chart_members *charts, dvi__chart_kind kind,
-                         const dvi__chart_paths *paths, int k, int some)
+INLINE void correct_from(const dvi__chart_members *charts, dvi__chart_kind kind,
+                         const dvi__chart_paths *paths, int k)
 {
   const size_t width = (size_t)charts->width;
   const int size = dvi__chart_size(kind);
   centres at;
-  lane xi[3], p0[3], dp[3], stored[3], mu[3], impulse[3], c[4], p1[3];
-  read_centres(charts, kind, k, some, &at);
-  load_rows(size, paths->xi + k, width, some, xi);
-  load_rows(size, paths->p0 + k, width, some, p0);
-  load_rows(size, paths->dp + k, width, some, dp);
-  find_impulse(&at, kind, paths, width, k, some, impulse);
-  store_rows(3, impulse, width, some, paths->impulse + k);
+  lane xi[3], p0[3], dp[3], mu[3], impulse[3], c[4], p1[3];
+  read_centres(charts, kind, k, &at);
+  load_rows(size, paths->xi + k, width, DVI__LANES, xi);
+  load_rows(size, paths->p0 + k, width, DVI__LANES, p0);
+  load_rows(size, paths->dp + k, width, DVI__LANES, dp);
+  find_impulse(&at, kind, paths, width, k, impulse);
+  store_rows(3, impulse, width, DVI__LANES, paths->impulse + k);
   if (kind == DVI__SPHERE) {
+    lane stored[3];
     lift(&at, p0, stored);
     lanes_cross(at.y0, stored, mu);
   }
@@ -204,19 +200,14 @@ INLINE void correct_some(const dvi__chart_members *charts, dvi__chart_kind kind,
   else
     direction_momentum(&at, c, xi, mu, p1);
   for (int i = 0; i < size; i++) p1[i] = p1[i] - p0[i] - dp[i];
-  store_rows(size, p1, width, some, paths->correction + k);
+  store_rows(size, p1, width, DVI__LANES, paths->correction + k);
 }
 
 INLINE void correct_kind(const dvi__chart_members *charts, dvi__chart_kind kind,
                          const dvi__chart_paths *paths)
 {
-  for (int k = 0; k < charts->width; k += DVI__LANES) {
-    const int some = some_of(charts->width, k);
-    if (some == DVI__LANES)
-      correct_some(charts, kind, paths, k, DVI__LANES);
-    else
-      correct_some(charts, kind, paths, k, some);
-  }
+  for (int k = 0; k < charts->width; k += DVI__LANES)
+    correct_from(charts, kind, paths, first_of(charts->width, k));
 }
 
 WIDE static void correct_in_charts(const dvi__chart_members *charts, const dvi__chart_paths *paths)

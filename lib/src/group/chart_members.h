@@ -4,8 +4,8 @@
 #define DVI_GROUP_CHART_MEMBERS_H
 #include "group/chart_nodes.h"
 
-/* Charts of `width` members. Rows of numbers are [width], and the rows of dvi__chart_nodes have
- * node j of member k at j*width + k. */
+/* Charts of `width` members, 4 at least. Rows of numbers are [width], and the rows of
+ * dvi__chart_nodes have node j of member k at j*width + k. */
 typedef struct dvi__chart_members {
   dvi__chart_kind kind;
   int width;

@@ -553,7 +553,10 @@ void dvi__charted_step_lanes(dvi__stepper *self, dvi__members *m, double h)
   lanes *own = self->lanes;
   for (int next = 0; next < m->count;) {
     next = choose_group(own, m, h, next);
-    if (own->width == 0) continue;
+    if (own->width < FEWEST) {
+      for (int k = 0; k < own->width; k++) m->left[own->member[k]] = 1;
+      continue;
+    }
     begin_group(self, m, h);
     solve_group(self);
     for (int k = 0; k < own->width; k++) end_member(self, m, h, k);

@@ -15,8 +15,8 @@ dvi_status dvi__charted_members_create(dvi__charted *charted, int nodes, int cap
                                        dvi__charted_members **members);
 void dvi__charted_members_destroy(dvi__charted_members **members);
 
-/* Begin with this number of members. Then take over the charts of the charted system, whose centre
- * is that of member k. */
+/* Begin with this number of members, 4 at least. Then take over the charts of the charted system,
+ * whose centre is that of member k. */
 void dvi__charted_members_begin(dvi__charted_members *members, int width);
 void dvi__charted_members_take(dvi__charted_members *members, int k);
 
