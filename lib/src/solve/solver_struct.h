@@ -89,10 +89,6 @@ int dvi__kinsol_certify_known(dvi__kinsol *kinsol, int count);
 dvi_status dvi__kinsol_solve(dvi__kinsol *kinsol, double size, double *x,
                              dvi__solve_report *report);
 
-/* Tell, after two corrections, whether the guess is so far off that another solution might be
- * found. */
-int dvi__misleading(const dvi__history *history, double whole);
-
 /* Replace x by x - correction. Gives the largest correction and the largest x. */
 void dvi__correct(int count, const double *correction, double *x, double *largest_correction,
                   double *largest_x);
