@@ -9,8 +9,8 @@
 set -eu
 
 packages="gcc g++ libc6-dev make cmake pkg-config libsundials-dev libsuitesparse-dev liblapack-dev
-  libarpack2-dev libyaml-dev check gnuplot-nox
-  python3-dev python3-cffi python3-numpy python3-setuptools python3-pytest"
+  libarpack2-dev libyaml-dev libhdf5-dev check gnuplot-nox
+  python3-dev python3-cffi python3-numpy python3-h5py python3-setuptools python3-pytest"
 lint_packages="clang clang-tidy clang-format cppcheck doxygen valgrind libc6-dbg libclang-rt-dev"
 
 usage() {
@@ -52,7 +52,7 @@ explain_by_hand() {
   cat >&2 <<END
 bootstrap: this system is neither Debian 12 or later nor Ubuntu 24.04 or later: please install what
 is needed yourself: a C11 compiler, make, CMake 3.22 or later, pkg-config, SUNDIALS 6.4 to 7 with
-KLU, SuiteSparse, LAPACK, ARPACK, libyaml, Check, gnuplot and, for a test, a C++ compiler;
+KLU, SuiteSparse, LAPACK, ARPACK, libyaml, HDF5, Check, gnuplot and, for a test, a C++ compiler;
 for lint also clang, clang-tidy, clang-format, cppcheck, Doxygen and valgrind. On Debian these
 packages are called
   $packages

@@ -13,6 +13,7 @@ from dvi._library import version
 from dvi.ensemble import Ensemble
 from dvi.errors import (BadArgument, CallbackFailed, Error, NotConverged, NotFinite, StepTooLarge,
                         Unsupported)
+from dvi.file import Rows, read
 from dvi.integrator import Integrator
 from dvi.recording import Event, Run
 from dvi.scene import Scene
@@ -21,5 +22,5 @@ from dvi.system import System
 
 __version__ = version()
 __all__ = ["BadArgument", "CallbackFailed", "Ensemble", "Error", "Event", "Integrator",
-           "NotConverged", "NotFinite", "Run", "Scene", "StepTooLarge", "System", "Unsupported",
-           "order", "work"]
+           "NotConverged", "NotFinite", "Rows", "Run", "Scene", "StepTooLarge", "System",
+           "Unsupported", "order", "read", "work"]
