@@ -10,10 +10,11 @@
 set -eu
 
 packages="gcc g++ libc6-dev make cmake pkg-config libsundials-dev libsuitesparse-dev liblapack-dev
-  libarpack2-dev libyaml-dev check gnuplot-nox
-  python3-dev python3-cffi python3-numpy python3-setuptools python3-pytest"
+  libarpack2-dev libyaml-dev libhdf5-dev check gnuplot-nox
+  python3-dev python3-cffi python3-numpy python3-h5py python3-setuptools python3-pytest"
 site_packages="python3 mkdocs"
-lint_packages="$site_packages clang clang-tidy clang-format cppcheck doxygen valgrind libc6-dbg libclang-rt-dev"
+lint_packages="$site_packages clang clang-tidy clang-format cppcheck doxygen valgrind libc6-dbg
+  libclang-rt-dev"
 
 usage() {
   cat >&2 <<'END'
@@ -55,7 +56,7 @@ explain_by_hand() {
   cat >&2 <<END
 bootstrap: this system is neither Debian 12 or later nor Ubuntu 24.04 or later: please install what
 is needed yourself: a C11 compiler, make, CMake 3.22 or later, pkg-config, SUNDIALS 6.4 to 7 with
-KLU, SuiteSparse, LAPACK, ARPACK, libyaml, Check, gnuplot and, for a test, a C++ compiler;
+KLU, SuiteSparse, LAPACK, ARPACK, libyaml, HDF5, Check, gnuplot and, for a test, a C++ compiler;
 for lint also clang, clang-tidy, clang-format, cppcheck, Doxygen and valgrind. On Debian these
 packages are called
   $packages

@@ -94,8 +94,12 @@ BEGIN {
   uses["picture"] = "cli plot"
   uses["study"] = "cli csv plot"
   uses["mechanics"] = uses["study"] " study load"
-  uses["watch"] = uses["bench"] = uses["mechanics"] " mechanics"
-  uses["cmd"] = uses["watch"] " watch bench sweep boundary varied picture"
+  uses["hdf5"] = ""
+  uses["store"] = "cli csv load hdf5"
+  uses["bench"] = uses["mechanics"] " mechanics"
+  uses["frames"] = "cli plot picture hdf5 store"
+  uses["watch"] = uses["bench"] " picture hdf5 store frames"
+  uses["cmd"] = uses["watch"] " watch bench sweep boundary varied"
   uses["main.c"] = "cli"
   # Single headers of other rooms that a room may include.
   also["reference solve/sundials_compat.h"] = 1
