@@ -30,7 +30,7 @@ def test_the_python_of_a_page_runs(page, tmp_path, monkeypatch):
     assert blocks
     if any("run.h5" in block for block in blocks):
         pytest.importorskip("h5py")
-        subprocess.run([os.environ["DVI"], "run", "cart.yaml", "--out", "run.h5"], check=True)
+        subprocess.run([os.environ["DVI_COMMAND"], "run", "cart.yaml", "--out", "run.h5"], check=True)
     names = {"__name__": page}
     for block in blocks:
         exec(compile(block, page, "exec"), names)
