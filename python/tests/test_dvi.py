@@ -1,6 +1,8 @@
 """The package gives the library's numbers, and its sentences."""
+import os
 import pathlib
 import pickle
+import subprocess
 
 import numpy as np
 import pytest
@@ -230,3 +232,25 @@ def test_errors_have_the_librarys_sentences(kepler):
 def test_measured_orders(kepler):
     table = dvi.order(kepler, "galerkin:degree=2", h=0.1, t_end=2, levels=4)
     assert np.allclose(table["order"][1:], 4, atol=0.1)
+
+
+def test_files_of_the_command(kepler, tmp_path):
+    pytest.importorskip("h5py")
+    path, command = tmp_path / "run.h5", os.environ["DVI_COMMAND"]
+    made = subprocess.run([command, "run", SCENES / "kepler.yaml", "--set", "e=0.3", "--method",
+                           METHOD, "--h", "0.0625", "--t-end", "1", "--out", path],
+                          stderr=subprocess.PIPE, text=True)
+    if "no module" in made.stderr:
+        pytest.skip(made.stderr)
+    rows = dvi.read(path)
+    run = kepler.run(METHOD, h=0.0625, t_end=1)
+    assert list(rows)[:3] == ["t", "x", "y"] and rows.array.shape == (17, len(rows))
+    assert all(np.array_equal(rows[name], run[name]) for name in ("t", "x", "p_y", "energy"))
+    assert rows.attributes["method"] == METHOD and "lagrangian" in rows.attributes["scene"]
+    with pytest.raises(KeyError, match="there is no column 'z'; there are t, x, y"):
+        rows["z"]
+    table = tmp_path / "table.h5"
+    subprocess.run([command, "sweep", "kepler", "--method", METHOD, "--set", "e=0,0.5", "--h", "0.1",
+                    "--t-end", "1", "--out", table], check=True)
+    assert list(dvi.read(table)["status"]) == ["DVI_OK", "DVI_OK"]
+    assert list(dvi.read(table)["e"]) == [0, 0.5]

@@ -60,6 +60,11 @@ say "the command"
 "$prefix/bin/dvi" --help >"$work/log" || { cat "$work/log"; fail "dvi --help does not work"; }
 "$prefix/bin/dvi" list methods >"$work/log" || { cat "$work/log"; fail "dvi list does not work"; }
 
+if [ -n "$(find "$prefix" -name dvi_hdf5.so)" ]; then
+  "$prefix/bin/dvi" run kepler --method verlet --h 0.1 --t-end 1 --out "$work/rows.h5" \
+    2>"$work/log" || { cat "$work/log"; fail "the installed command writes no HDF5"; }
+fi
+
 say "scenes and pages"
 "$prefix/bin/dvi" check "$prefix/share/dvi/scenes/kepler.yaml" >"$work/log" 2>&1 || {
   cat "$work/log"
