@@ -79,7 +79,9 @@ static int refuse_of_run(const view_request *r)
   return DONE;
 }
 
-static int take_scene(const view_request *r, const char *name, view_source *source)
+/* Take a run of the scene. After Ctrl-C *ended is the exit code that it wants, and the page shows
+ * what there is. */
+static int take_scene(const view_request *r, const char *name, view_source *source, int *ended)
 {
   const view_rerun run = {.name = name,
                           .method = r->method,
@@ -93,8 +95,11 @@ static int take_scene(const view_request *r, const char *name, view_source *sour
                        r->scene != NULL ? "scene" : "rows", name);
   int code = open_any(name, &r->settings, &source->scene);
   if (code != DONE) return code;
-  const int ended = view_run_scene(&run, source->scene, &files);
-  code = ended == DONE || ended > 128 ? DONE : ended;
+  code = view_run_scene(&run, source->scene, &files);
+  if (code > 128) {
+    *ended = code;
+    code = DONE;
+  }
   if (code == DONE && files.has_grids)
     code = view_source_grids(source, files.grids, files.rows, r->frames, r->fields.count,
                              r->fields.word);
@@ -139,21 +144,25 @@ static int check_request(const view_request *r, const char *path)
   return file_writable(r->out) ? DONE : FAILED;
 }
 
-static int take_source(const view_request *r, const char *path, view_source *source)
+static int take_source(const view_request *r, const char *path, view_source *source, int *ended)
 {
   const bool has_grids = ends_with(path, ".pvd") || ends_with(path, ".vtu");
   if (has_grids) return take_grids(r, path, source);
   if (ends_with(path, ".csv") || strcmp(path, "-") == 0) return take_rows(r, path, source);
-  return take_scene(r, path, source);
+  if (ends_with(path, ".h5") || ends_with(path, ".vtkhdf"))
+    return usage_error("view: %s is a file of HDF5, which dvi view does not read; dvi run --out "
+                       "FILE.csv and --pvd FILE.pvd write files that it reads",
+                       path);
+  return take_scene(r, path, source, ended);
 }
 
 static int view_file(const view_request *r, const char *path)
 {
   view_source source = {.scene = NULL};
   char made[MADE_SIZE];
-  int code = check_request(r, path);
+  int ended = DONE, code = check_request(r, path);
   if (code != DONE) return code;
-  code = take_source(r, path, &source);
+  code = take_source(r, path, &source, &ended);
   if (code == DONE && source.run.layout == NULL && (r->links.count > 0 || r->points.count > 0))
     code = usage_error("view: --%s is for points, and fields have none",
                        r->links.count > 0 ? "link" : "point");
@@ -168,7 +177,7 @@ static int view_file(const view_request *r, const char *path)
   source.run.made = made;
   if (code == DONE) code = view_write(&source.run, r->out);
   view_source_clear(&source);
-  return code;
+  return code == DONE ? ended : code;
 }
 
 static const char *const details[] = {

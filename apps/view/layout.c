@@ -216,6 +216,18 @@ static bool take_numbers(view_layout *layout, const names *n)
   return true;
 }
 
+/* Place bodies that have no place side by side, as the sections of a rod. A single one stands at the
+ * origin. */
+static void spread_bodies(view_layout *layout)
+{
+  const bool have_places = layout->points > 0;
+  for (int k = 0; k < layout->bodies && layout->bodies > 1 && !have_places; k++) {
+    view_point *p = add_point(layout, layout->body[k].name, strlen(layout->body[k].name));
+    p->fixed[0] = k;
+    layout->body[k].point = layout->points - 1;
+  }
+}
+
 bool layout_find(int coordinates, word_at name_at, const void *list, view_layout *layout)
 {
   const names n = {.count = coordinates, .at = name_at, .list = list};
@@ -232,6 +244,7 @@ bool layout_find(int coordinates, word_at name_at, const void *list, view_layout
     if (taken == 0) taken = take_angle(layout, &n, i);
   }
   if (good && layout->points == 0 && layout->bodies == 0) good = take_numbers(layout, &n);
+  if (good) spread_bodies(layout);
   if (!good) complain("out of memory");
   return good;
 }

@@ -34,8 +34,8 @@ static void find_moments(const problem *scene, const view_layout *layout, view_b
   const dvi_factor *factor = factor_of(scene, R);
   double first[3] = {0}, second[9];
   for (int k = 0; k < 9; k++) second[k] = mass_entry(scene, R + k / 3, R + k % 3);
-  if (body->point != VIEW_NONE) {
-    const int x = layout->point[body->point].from[0];
+  const int x = body->point != VIEW_NONE ? layout->point[body->point].from[0] : VIEW_NONE;
+  if (x != VIEW_NONE) {
     body->mass = mass_entry(scene, x, x);
     for (int a = 0; a < 3; a++) first[a] = mass_entry(scene, x, R + a);
   }

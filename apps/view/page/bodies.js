@@ -14,8 +14,8 @@ function shapeMatrix({ spread, vectors: e }, centre, factor) {
     a * e[2][0], b * e[2][1], c * e[2][2], centre[2], 0, 0, 0, 1);
 }
 
-function makeBody(body, k, size) {
-  const group = new Group(), axes = principalAxes(body.moments, 0.2 * size);
+function makeBody(body, k, usual) {
+  const group = new Group(), axes = principalAxes(body.moments, usual);
   const material = new MeshStandardMaterial({ color: colourOfPoint(k), roughness: 0.6 });
   const shapes = {
     box: new Mesh(new BoxGeometry(2, 2, 2), material),
@@ -34,7 +34,9 @@ function makeBody(body, k, size) {
 
 // Add the bodies of a run to a scene. Rotations are [frames][bodies][9], row by row.
 export function addBodies(scene, run, size) {
-  const made = run.bodies.map((body, k) => makeBody(body, k, size));
+  // several bodies without places stand 1 apart
+  const usual = run.bodies.length > 1 ? Math.min(0.2 * size, 0.4) : 0.2 * size;
+  const made = run.bodies.map((body, k) => makeBody(body, k, usual));
   for (const { group } of made) scene.add(group);
   return {
     shape(name) {

@@ -9,7 +9,8 @@ const TRAILS_MOST = 300;
 
 function addBalls(scene, run, size) {
   const count = run.points.length, radius = size * Math.min(0.02, 0.25 / Math.cbrt(count + 1) ** 2);
-  const balls = new InstancedMesh(new SphereGeometry(radius, 20, 14),
+  const rings = count > TRAILS_MOST ? 6 : 14;
+  const balls = new InstancedMesh(new SphereGeometry(radius, rings + 6, rings),
     new MeshStandardMaterial({ roughness: 0.5 }), count);
   for (let k = 0; k < count; k++) balls.setColorAt(k, new Color(colourOfPoint(k)));
   balls.frustumCulled = false;

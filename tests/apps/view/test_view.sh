@@ -58,6 +58,21 @@ expect 2 'no such definition' view "$scenes/double-pendulum.yaml" --out x.html -
 says err "\-\-point lowr: .*(did you mean 'lower'?)" 'no such definition'
 expect 2 'a definition of the catalogue' view kepler --method verlet --out x.html --point lower
 
+cat >rod.yaml <<'END'
+parameters: {J: [[1.6, 0, 0], [0, 1.4, 0], [0, 0, 1.2]], K: [[1, 0, 0], [0, 1, 0], [0, 0, 1]]}
+domain: {x: [0, 1]}
+space: fem:degree=1,cells=2
+fields: {R: rotation}
+density: dot(omega(R), J*omega(R))/2 - dot(kappa(R,x), K*kappa(R,x))/2
+boundary: free
+initial: {R: "turn([0, 0, 1], x)"}
+method: lie-verlet
+step: 0.01
+until: 0.1
+END
+expect 0 'sections of a rod' view rod.yaml --out rod.html
+holds rod.html '"points":["R_1","R_2","R_3"]' 'sections side by side'
+
 # Files of runs give the page of the scene.
 columns=q_1_x,q_1_y,q_1_z,q_2_x,q_2_y,q_2_z,q_3_x,q_3_y,q_3_z,energy
 expect 0 'a run' run rods.yaml --out rods.csv --columns "$columns"
@@ -108,6 +123,7 @@ expect 1 'no list' view nowhere.pvd --out x.html
 says err "cannot read 'nowhere.pvd'" 'no list'
 expect 1 'no grid' view nowhere.vtu --out x.html
 expect 2 'an unknown kind' view rods.h5 --out x.html
+says err 'rods.h5 is a file of HDF5' 'an unknown kind'
 expect 2 'rows and a method' view rods.csv --method verlet --out x.html
 says err '\-\-method is for scenes' 'rows and a method'
 expect 2 'a setting of nothing' view rods.csv --set k=2 --out x.html
@@ -148,6 +164,16 @@ cp rods.yaml kept.html
 expect 1 'a failed run' view rods.yaml --method galerkin:degree=1 --h 4 --t-end 4 --out kept.html
 same rods.yaml kept.html 'a failed run leaves the old page'
 [ ! -e x.html ] || fail 'a page without a reason'
+# A run that a signal ends has the page of its rows, and the code of dvi run.
+"$dvi" view kepler --method verlet --h 1e-3 --t-end 1e9 --out ended.html 2>err &
+for _ in $(seq 100); do
+  ls dvi-view-*/rows.csv.part-* >/dev/null 2>&1 && break
+  sleep 0.1
+done
+kill -INT $!
+ends 130 'Ctrl-C'
+holds ended.html '"points":["point"]' 'the page of an ended run'
+
 for left in dvi-view-*; do [ ! -e "$left" ] || fail "$left was left behind"; done
 no_trace 'view'
 finish
