@@ -222,7 +222,8 @@ static void spread_bodies(view_layout *layout)
 {
   const bool have_places = layout->points > 0;
   for (int k = 0; k < layout->bodies && layout->bodies > 1 && !have_places; k++) {
-    view_point *p = add_point(layout, layout->body[k].name, strlen(layout->body[k].name));
+    const char *name = layout->body[k].name;
+    view_point *p = add_point(layout, name, strlen(name));
     p->fixed[0] = k;
     layout->body[k].point = layout->points - 1;
   }
