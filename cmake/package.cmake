@@ -26,7 +26,7 @@ install(FILES ${scenes} DESTINATION "${CMAKE_INSTALL_DATADIR}/dvi/scenes")
 install(FILES README.md CHANGELOG.md LICENSE LICENSES/three.js.txt
         DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 install(DIRECTORY docs DESTINATION "${CMAKE_INSTALL_DOCDIR}"
-        FILES_MATCHING PATTERN "*.md" PATTERN "*.svg" PATTERN "*.bib")
+        FILES_MATCHING PATTERN "*.md" PATTERN "*.svg" PATTERN "*.png" PATTERN "*.bib")
 install(DIRECTORY apps/examples apps/problems apps/scenes DESTINATION "${CMAKE_INSTALL_DOCDIR}/apps"
         PATTERN "CMakeLists.txt" EXCLUDE)
 if(EXISTS "${PROJECT_SOURCE_DIR}/docs/dvi.1")
