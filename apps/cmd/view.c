@@ -104,7 +104,7 @@ static int take_scene(const view_request *r, const char *name, view_source *sour
     code = view_source_grids(source, files.grids, files.rows, r->frames, r->fields.count,
                              r->fields.word);
   else if (code == DONE)
-    code = view_source_rows(source, files.rows, r->frames, &r->points);
+    code = view_source_rows(source, files.rows, r->frames, &r->settings, &r->points);
   view_files_remove(&files);
   return code;
 }
@@ -118,7 +118,7 @@ static int take_rows(const view_request *r, const char *path, view_source *sourc
     return usage_error("view: --%s is for scenes; give --scene",
                        r->settings.count > 0 ? "set" : "point");
   if (code == DONE && r->scene != NULL) code = open_problem(r->scene, &r->settings, &source->scene);
-  return code == DONE ? view_source_rows(source, path, r->frames, &r->points) : code;
+  return code == DONE ? view_source_rows(source, path, r->frames, &r->settings, &r->points) : code;
 }
 
 static int take_grids(const view_request *r, const char *path, view_source *source)

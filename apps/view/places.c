@@ -1,6 +1,5 @@
 #include "view/places.h"
 
-#include <dvi/scene.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,6 +7,10 @@
 
 #include "cli/command.h"
 #include "cli/spelling.h"
+#include "load/catalogue.h"
+
+/* Difference of two starts by rounding. */
+static const double SAME_START = 1e-12;
 
 static int no_memory(void)
 {
@@ -60,24 +63,23 @@ static const char *point_name_at(int k, const void *list)
   return dvi_scene_point_of((dvi_scene *)list, k, &point) == DVI_OK ? point.name : NULL;
 }
 
-static bool has_point(const problem *scene, const char *name)
+static bool has_point(const dvi_scene *expressions, const char *name)
 {
   const char *known = NULL;
   int i = 0;
   do {
-    known = scene->scene != NULL ? point_name_at(i++, scene->scene) : NULL;
+    known = expressions != NULL ? point_name_at(i++, expressions) : NULL;
   } while (known != NULL && strcmp(known, name) != 0);
   return known != NULL;
 }
 
-static int check_names(const problem *scene, const words *names)
+static int check_names(const problem *scene, const dvi_scene *expressions, const words *names)
 {
   char near[2 * FIELD_SIZE] = "";
   for (int k = 0; k < names->count; k++) {
     const char *name = names->word[k];
-    if (has_point(scene, name)) continue;
-    if (scene->scene != NULL)
-      (void)suggestion(name, point_name_at, scene->scene, near, sizeof near);
+    if (has_point(expressions, name)) continue;
+    if (expressions != NULL) (void)suggestion(name, point_name_at, expressions, near, sizeof near);
     return usage_error(
         "view: --point %s: %s has no definition of this name with 2 or 3 numbers, of "
         "coordinates alone%s",
@@ -86,16 +88,42 @@ static int check_names(const problem *scene, const words *names)
   return DONE;
 }
 
-int places_add(const problem *scene, const words *names, const int *column, series_table *table,
-               int *first)
+/* ---- scenes of the catalogue ---- */
+
+static bool starts_alike(const problem *scene, const dvi_scene *other)
+{
+  const double *q, *v, *p;
+  dvi_scene_start(other, &q, &v, &p);
+  bool alike = q != NULL && dvi_system_nq(dvi_scene_system(other)) == scene->nq;
+  for (int i = 0; i < scene->nq && alike; i++)
+    alike = fabs(q[i] - scene->q[i]) <= SAME_START * fmax(1, fabs(q[i]));
+  return alike;
+}
+
+dvi_scene *places_scene(const problem *scene, const words *settings, dvi_scene **made)
+{
+  *made = NULL;
+  if (scene->scene != NULL) return scene->scene;
+  for (const catalogue_text *at = catalogue_texts; at->name != NULL && *made == NULL; at++)
+    if (strcmp(at->name, scene->name) == 0)
+      (void)dvi_scene_parse(at->name, at->text, at->length, settings->count, settings->word, made,
+                            NULL, 0);
+  if (*made != NULL && !starts_alike(scene, *made)) dvi_scene_destroy(made);
+  return *made;
+}
+
+/* ---- all points ---- */
+
+int places_add(const problem *scene, dvi_scene *expressions, const words *names, const int *column,
+               series_table *table, int *first)
 {
   dvi_scene_point point;
-  const int code = check_names(scene, names);
+  const int code = check_names(scene, expressions, names);
   *first = table->columns;
-  if (code != DONE || scene->scene == NULL) return code;
+  if (code != DONE || expressions == NULL) return code;
   double *q = calloc((size_t)scene->nq + 1, sizeof *q);
   bool good = q != NULL;
-  for (int i = 0; good && dvi_scene_point_of(scene->scene, i, &point) == DVI_OK; i++)
+  for (int i = 0; good && dvi_scene_point_of(expressions, i, &point) == DVI_OK; i++)
     if (is_wanted(names, point.name)) good = add_point(scene, &point, column, table, q);
   free(q);
   return good ? DONE : no_memory();

@@ -164,10 +164,13 @@ static bool shows_places(const view_source *s)
 }
 
 /* Take the definitions' points in place of unit vectors. Bodies and points of coordinates stay. */
-static int take_places(view_source *s, const words *points)
+static int take_places(view_source *s, const words *settings, const words *points)
 {
   int first;
-  const int code = places_add(s->scene, points, s->column, &s->table, &first);
+  dvi_scene *made;
+  dvi_scene *const expressions = places_scene(s->scene, settings, &made);
+  const int code = places_add(s->scene, expressions, points, s->column, &s->table, &first);
+  dvi_scene_destroy(&made);
   if (code != DONE || first == s->table.columns) return code;
   const size_t room = (size_t)s->names + (size_t)(s->table.columns - first) + 1;
   const char **name = realloc(s->name, room * sizeof *name);
@@ -226,18 +229,19 @@ static bool link_rigid(view_source *s)
 /* ---- runs ---- */
 
 /* Find what the coordinates of a scene mean, in space. */
-static int lay_out_scene(view_source *s, const words *points)
+static int lay_out_scene(view_source *s, const words *settings, const words *points)
 {
   int code = DONE;
   moments_find(s->scene, &s->layout);
-  if (points->count > 0 || !shows_places(s)) code = take_places(s, points);
+  if (points->count > 0 || !shows_places(s)) code = take_places(s, settings, points);
   if (code != DONE) return code;
   if (s->places == 0) return links_find(s->scene, &s->layout) ? DONE : FAILED;
   moments_find(s->scene, &s->layout);
   return link_rigid(s) ? DONE : no_memory();
 }
 
-int view_source_rows(view_source *s, const char *path, long frames, const words *points)
+int view_source_rows(view_source *s, const char *path, long frames, const words *settings,
+                     const words *points)
 {
   int code = read_table(s, path);
   if (code != DONE) return code;
@@ -252,7 +256,7 @@ int view_source_rows(view_source *s, const char *path, long frames, const words 
   if (code != DONE) return code;
   if (s->names == 0) return usage_error("view: '%s' has no coordinates behind t", path);
   if (!layout_find(s->names, name_at, s, &s->layout)) return FAILED;
-  if (s->scene != NULL) code = lay_out_scene(s, points);
+  if (s->scene != NULL) code = lay_out_scene(s, settings, points);
   if (code != DONE) return code;
   choose_curves(s);
   s->run.layout = &s->layout;

@@ -20,11 +20,12 @@ typedef struct view_source {
 } view_source;
 
 /** Read the rows of a run of a mechanical system from a CSV file, and find what they mean: by the
- * scene, or by their names alone. `frames` is how many a page may have, and `points` are the
- * scene's definitions that are drawn, too; without names they are where no coordinates are points.
- * Returns DONE, or complains and returns the exit code. Call view_source_clear afterwards in any
- * case. */
-int view_source_rows(view_source *source, const char *path, long frames, const words *points);
+ * scene with its settings, or by their names alone. `frames` is how many a page may have, and
+ * `points` are the scene's definitions that are drawn, too; without names they are where no
+ * coordinates are points. Returns DONE, or complains and returns the exit code. Call
+ * view_source_clear afterwards in any case. */
+int view_source_rows(view_source *source, const char *path, long frames, const words *settings,
+                     const words *points);
 
 /** Read the grids of a field from a .pvd file, or one .vtu file, and the rows beside them unless
  * their path is NULL. Fields are as in grid_frames_read. Returns and is cleared likewise. */

@@ -73,6 +73,10 @@ END
 expect 0 'sections of a rod' view rod.yaml --out rod.html
 holds rod.html '"points":["R_1","R_2","R_3"]' 'sections side by side'
 
+expect 0 'the catalogue' view double-pendulum --method galerkin:degree=2 --h 0.02 --t-end 2 \
+  --set l1=1 --out double.html
+holds double.html '"links":[[-1,0],[0,1]]' 'definitions of the scene of the catalogue'
+
 # Files of runs give the page of the scene.
 columns=q_1_x,q_1_y,q_1_z,q_2_x,q_2_y,q_2_z,q_3_x,q_3_y,q_3_z,energy
 expect 0 'a run' run rods.yaml --out rods.csv --columns "$columns"
