@@ -272,18 +272,21 @@ typedef struct dvi_force {
   void *user;
 } dvi_force;
 
+/** Most points in a batch of holonomic constraints. */
+enum { DVI_HOLONOMIC_POINTS = 64 };
+
 /** Holonomic constraints phi(t,q) = 0 of some rows, such as a rod, a rail or a joint (dvi/joint.h).
  *
  *  With factors phi is a function of all stored coordinates, of any smooth continuation off the
  *  manifold, as potentials are. Rows may depend on others, if they do so all along the motion
- *  (docs/constraints.md). The callbacks have the one-point shape alone. */
+ *  (docs/constraints.md). Batches have at most DVI_HOLONOMIC_POINTS points. */
 typedef struct dvi_holonomic {
   const char *name; /**< copied. Used in messages */
   int count;        /**< number of rows, at least 1 */
-  /** phi [count]. Required. */
+  /** phi [count]. Required (or value_batch). */
   int (*value)(double t, const double *q, double *phi, void *user);
   /** The gradients in the order of the pattern `gradients`, which has n rows and `count` columns.
-   *  Column a holds d phi_a/dq. Required. */
+   *  Column a holds d phi_a/dq. Required (or gradient_batch). */
   int (*gradient)(double t, const double *q, double *phi_q, void *user);
   /** The Hessian of the function phi.w, w [count] fixed, in the order of the pattern `qq`.
    *  Default: differences of the gradients. */
@@ -294,6 +297,8 @@ typedef struct dvi_holonomic {
   void *user;
   /** [count] names of the rows in messages. Copied. Default: the name, with a row's number */
   const char *const *row_names;
+  int (*value_batch)(int points, const double *t, const double *q, double *phi, void *user);
+  int (*gradient_batch)(int points, const double *t, const double *q, double *phi_q, void *user);
 } dvi_holonomic;
 
 /** Nonholonomic constraints A(t,q) v + a(t,q) = 0, of wheels and blades. A start refuses dependent
