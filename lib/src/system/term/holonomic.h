@@ -11,7 +11,7 @@ dvi_status dvi__rows_join(dvi_system *system);
 void dvi__holonomic_clear(dvi__holonomic_term *term);
 
 /* Compute phi [count*points] and its gradients [entries*points] in the order of the term's pattern,
- * of one term at up to DVI_HOLONOMIC_POINTS points. work [n + the longer result] holds one point. */
+ * of one term at up to DVI_HOLONOMIC_POINTS points. work [n + the longer result] has one point. */
 dvi_status dvi__holonomic_values(const dvi__holonomic_term *term, int points, const double *t,
                                  const double *q, double *work, double *phi);
 dvi_status dvi__holonomic_gradients(const dvi__holonomic_term *term, int points, const double *t,
