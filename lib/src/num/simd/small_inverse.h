@@ -3,8 +3,8 @@
 #ifndef DVI_NUM_SIMD_SMALL_INVERSE_H
 #define DVI_NUM_SIMD_SMALL_INVERSE_H
 
-/* Most columns. */
-enum { DVI__SMALL_INVERSE_MOST = 32 };
+/* Most columns, and most of a matrix near 1. */
+enum { DVI__SMALL_INVERSE_MOST = 96, DVI__NEAR_ONE_MOST = 32 };
 
 /* Replace A [n*n], by columns or by rows, by its inverse, with exchanges. Gives the sign of its
  * determinant, 0 if it is singular. */

@@ -8,7 +8,7 @@
 #include "num/simd/wide.h"
 #include "num/simd/width.h"
 
-enum { LANES = DVI__STAGE_LANES, BLOCK = 4, MOST_UNKNOWNS = DVI__SMALL_INVERSE_MOST };
+enum { LANES = DVI__STAGE_LANES, BLOCK = 4, MOST_UNKNOWNS = DVI__NEAR_ONE_MOST };
 
 typedef double block __attribute__((vector_size(BLOCK * sizeof(double)), aligned(8), may_alias));
 

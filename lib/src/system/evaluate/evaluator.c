@@ -536,10 +536,13 @@ dvi_status dvi__form_hessian(dvi__evaluator *e, const double *q, const double *w
 dvi_status dvi__velocity_hessian(dvi__evaluator *e, double t, const double *q, const double *v,
                                  const double **L_vv)
 {
+  const dvi__lagrangian_term *l = e->system->lagrangian;
+  const int alone = l->computed != NULL;
   e->counters->hessians++;
   *L_vv = e->hessian[2];
-  const dvi_status status = dvi__general_hessian(e->system->lagrangian, &e->scratch, 1, &t, q, v,
-                                                 e->hessian[0], e->hessian[1], e->hessian[2]);
+  const dvi_status status = dvi__general_hessian(l, &e->scratch, 1, &t, q, v,
+                                                 alone ? NULL : e->hessian[0],
+                                                 alone ? NULL : e->hessian[1], e->hessian[2]);
   dvi__count_differences(e);
   return status;
 }
