@@ -279,7 +279,7 @@ enum { DVI_HOLONOMIC_POINTS = 64 }; /**< most points in a batch of holonomic con
 /** Holonomic constraints phi(t,q) = 0 of some rows, such as a rod, a rail or a joint (dvi/joint.h).
  *
  *  With factors phi is a function of all stored coordinates, of any smooth continuation off the
- *  manifold, as potentials are. Rows may depend on others all along (docs/mechanics/constraints.md). */
+ *  manifold, as potentials are. Rows may be dependent (docs/mechanics/constraints.md). */
 typedef struct dvi_holonomic {
   const char *name; /**< copied. Used in messages */
   int count;        /**< number of rows, at least 1 */

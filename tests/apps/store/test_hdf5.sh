@@ -120,6 +120,9 @@ says err "^dvi: cannot write 'full.h5': File too large$" 'a full disk'
 [ "$(wc -l <err)" -eq 1 ] || fail 'one sentence about a full disk'
 no_trace 'failures'
 
+expect 1 'no CSV' spectrum whole.h5
+says err "'whole.h5' is a file of HDF5, and CSV is read here" 'no CSV'
+
 # A sweep is a table, and frames of fields are those of .vtu files.
 sweep='sweep kepler --method verlet --h 0.1 --t-end 1 --set e=0:0.5:3'
 expect 0 'a sweep' $sweep --out table.h5
