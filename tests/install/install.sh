@@ -60,6 +60,22 @@ say "the command"
 "$prefix/bin/dvi" --help >"$work/log" || { cat "$work/log"; fail "dvi --help does not work"; }
 "$prefix/bin/dvi" list methods >"$work/log" || { cat "$work/log"; fail "dvi list does not work"; }
 
+say "SUNDIALS, loaded on demand"
+helper=$(find "$prefix" -name 'libdvi-sundials.so.?.?')
+[ -n "$helper" ] || fail "the library that loads SUNDIALS is not there"
+bench() { "$prefix/bin/dvi" bench kepler --method verlet --against cvode --levels 2 >"$work/log" 2>&1; }
+bench || { cat "$work/log"; fail "SUNDIALS does not work"; }
+mv "$helper" "$helper.away"
+"$prefix/bin/dvi" run kepler --method verlet --h 0.1 --t-end 1 >"$work/log" 2>&1 || {
+  cat "$work/log"
+  fail "a run without SUNDIALS asks for it"
+}
+if bench || ! grep -q 'SUNDIALS cannot be loaded: libdvi-sundials' "$work/log"; then
+  cat "$work/log"
+  fail "no sentence on a SUNDIALS that cannot be loaded"
+fi
+mv "$helper.away" "$helper"
+
 say "scenes and pages"
 "$prefix/bin/dvi" check "$prefix/share/dvi/scenes/kepler.yaml" >"$work/log" 2>&1 || {
   cat "$work/log"
