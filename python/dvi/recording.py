@@ -5,12 +5,12 @@ import numpy as np
 
 from dvi._dvi import ffi, lib
 from dvi._library import Owned, array, numbers
-from dvi.errors import error
+from dvi.errors import check, error
 
 PARTS = {"q": lib.DVI_RECORD_Q, "p": lib.DVI_RECORD_P, "v": lib.DVI_RECORD_V,
          "invariants": lib.DVI_RECORD_INVARIANTS, "step": lib.DVI_RECORD_STEP,
          "constraint": lib.DVI_RECORD_CONSTRAINT, "reactions": lib.DVI_RECORD_REACTIONS}
-USUAL = ("q", "p", "v", "invariants")
+USUAL = ("q", "p")
 ENDS = ("complete", "stopped", "event", "cancelled", "failed")
 
 
@@ -26,7 +26,8 @@ class Event(NamedTuple):
 class Run:
     """A recorded run.
 
-    t, q, p, v, invariants  arrays with a row for each time
+    t, q, p, v, invariants  arrays with a row for each time. v and invariants are evaluated when
+                            they are first used, if they were not recorded
     events                  list of `Event`
     end                     why the run ended: complete, stopped, event or cancelled
     run["x"]                a column by its name (`columns` has all of them)
@@ -34,19 +35,19 @@ class Run:
 
     def __init__(self, system, method, recording, names):
         self.system, self.method = system, method
-        self._part = {"t": lib.DVI_RECORD_T, **PARTS}
         self._owned, self._recording = recording, recording.pointer
         report = lib.dvi_recording_report(self._recording)
         self.steps, self.end = report.steps, ENDS[report.end]
         self.t = self._rows(lib.DVI_RECORD_T)[:, 0]
-        for name, part in PARTS.items():
-            setattr(self, name, self._rows(part))
+        self._recorded = {name: self._rows(part) for name, part in PARTS.items()}
         self.events = [self._event(i, names) for i in range(report.events)]
-        self._place = {"t": (self.t, None)}
+        self._place = {"t": ("t", None)}
         self._list("q", system.coordinates)
         self._list("v", system.velocities)
         self._list("p", system.momenta)
         self._list("invariants", system.invariants)
+        for name in ("step", "constraint"):
+            self._list(name, [name])
 
     def _rows(self, part):
         width = ffi.new("int *")
@@ -64,10 +65,57 @@ class Run:
                      np.array(ffi.unpack(event.v, nv)))
 
     def _list(self, part, names):
-        rows = getattr(self, part)
-        if rows is not None:
+        derived = part in ("v", "invariants") and self._has_states()
+        if derived or self._recorded[part] is not None:
             for i, name in enumerate(names):
-                self._place.setdefault(name, (rows, i))
+                self._place.setdefault(name, (part, i))
+
+    def _has_states(self):
+        return self._recorded["q"] is not None and self._recorded["p"] is not None
+
+    def _derived(self, part):
+        """Return recorded rows of a part, or evaluate them once."""
+        if self._recorded[part] is None and self._has_states():
+            status = lib.dvi_recording_derive(self._recording, PARTS[part])
+            self.system.raise_failure()
+            check(status)
+            self._recorded[part] = self._rows(PARTS[part])
+        return self._recorded[part]
+
+    @property
+    def q(self):
+        """Return the coordinates [rows, nq]."""
+        return self._recorded["q"]
+
+    @property
+    def p(self):
+        """Return the momenta [rows, nv]."""
+        return self._recorded["p"]
+
+    @property
+    def v(self):
+        """Return the velocities [rows, nv]."""
+        return self._derived("v")
+
+    @property
+    def invariants(self):
+        """Return the energy and what the system declares [rows, count]."""
+        return self._derived("invariants")
+
+    @property
+    def step(self):
+        """Return the lengths of the last steps [rows, 1], if they were recorded."""
+        return self._recorded["step"]
+
+    @property
+    def constraint(self):
+        """Return the distances from the constraint [rows, 1], if they were recorded."""
+        return self._recorded["constraint"]
+
+    @property
+    def reactions(self):
+        """Return the multipliers [rows, count], if they were recorded."""
+        return self._recorded["reactions"]
 
     @property
     def columns(self):
@@ -77,8 +125,8 @@ class Run:
     def __getitem__(self, name):
         if name not in self._place:
             raise KeyError(f"there is no column {name!r}; there are {', '.join(self.columns)}")
-        rows, i = self._place[name]
-        return rows if i is None else rows[:, i]
+        part, i = self._place[name]
+        return self.t if i is None else getattr(self, part)[:, i]
 
     def __len__(self):
         return len(self.t)

@@ -91,7 +91,8 @@ machines="docs/control.md docs/sensitivities.md
 [ -z "${DVI_TEST_FEWER:-}" ] || machines=
 
 commands=0
-for page in README.md docs/command.md docs/limits.md docs/guide.md docs/theory.md docs/problems.md \
+for page in README.md docs/tutorial.md docs/command.md docs/limits.md docs/guide.md \
+  docs/theory.md docs/problems.md \
   docs/trust.md docs/adaptive.md docs/oscillations.md docs/shooting-studies.md docs/paths.md \
   docs/scenes.md $machines docs/cookbook.md docs/scene-errors.md \
   $(cd "$top" && find docs/methods docs/fields -name '*.md' | sort); do

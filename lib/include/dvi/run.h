@@ -127,7 +127,8 @@ dvi_status dvi_run(dvi_integrator *integrator, const dvi_run_options *options,
 /** Run an integrator to t_end as dvi_run, and record the run.
  *
  *  The run's own observer and events are called, too, after their row or event is kept. With
- *  `times` the observer is called after every `every` steps all the same.
+ *  `times` the observer is called after every `every` steps all the same. Without observer, events
+ *  and times, steps are taken together as in dvi_run, and `cancel` is looked at every 33 steps.
  *  @param      run        options of the run, with `every` for rows and observer
  *  @param      options    NULL for defaults
  *  @param[out] recording  owned by the caller. It has all rows up to a failure of the run, too.
@@ -151,6 +152,13 @@ int64_t dvi_recording_rows(const dvi_recording *recording);
  *  @param[out] width  numbers of a row. May be NULL
  *  @return NULL if the part was not recorded, and for NULL */
 const double *dvi_recording_part(const dvi_recording *recording, dvi_record_part part, int *width);
+
+/** Evaluate DVI_RECORD_V, DVI_RECORD_INVARIANTS, or both, of all rows, from recorded coordinates and
+ *  momenta. What was recorded stays. The system must still exist.
+ *  @retval DVI_BAD_ARGUMENT  another part, or coordinates or momenta were not recorded
+ *  @retval DVI_NO_MEMORY     memory could not be allocated
+ *  @retval (others)          as dvi_system_velocity and dvi_system_invariants. Nothing was added */
+dvi_status dvi_recording_derive(dvi_recording *recording, unsigned parts);
 
 /** Return event i of the run, owned by the recording. NULL if i is out of range. */
 const dvi_recorded_event *dvi_recording_event(const dvi_recording *recording, int64_t i);

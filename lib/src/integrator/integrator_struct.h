@@ -78,6 +78,9 @@ dvi_status dvi__integrator_smooth_step(dvi_integrator *integrator, double h);
  * of single steps. Gives their number, also if a step fails. The last step, or all of a pass, is
  * not to be taken back. */
 dvi_status dvi__integrator_steps(dvi_integrator *integrator, double h, long count, long *taken);
+
+enum { DVI__TOGETHER = 32 }; /* more steps taken together would hardly save time */
+
 void dvi__integrator_smooth_back(dvi_integrator *integrator);
 
 /* Evaluate q [nq] and v [nv] at tau in [0,1] of the last smooth step. Either may be NULL. */

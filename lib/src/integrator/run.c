@@ -1,6 +1,7 @@
 /* A run of an integrator. These functions give the loop of room march an integrator's coordinates
  * and velocities. */
-#include <dvi/run.h>
+#include "integrator/run.h"
+
 #include <math.h>
 
 #include "core/memory.h"
@@ -11,7 +12,9 @@
 typedef struct mechanics {
   dvi_integrator *integrator;
   const dvi_run_options *options;
-  double *q, *v; /* [nq], [nv] at an event */
+  const dvi__keeper *keeper; /* of rows, or NULL */
+  long first;                /* number of steps before the run */
+  double *q, *v;             /* [nq], [nv] at an event */
 } mechanics;
 
 static double mechanics_time(const void *of)
@@ -46,9 +49,28 @@ static dvi_status mechanics_advance(void *of, double h, double t_end, double tol
   return dvi__integrator_step_exactly(I, left);
 }
 
+/* Rows are kept of the steps that a failure leaves, too. */
+static dvi_status advance_with_rows(const mechanics *m, double h, long count, long *taken)
+{
+  dvi_integrator *I = m->integrator;
+  const long every = m->options->every > 0 ? m->options->every : 1;
+  dvi__trail trail = {.nq = dvi_system_nq(I->system),
+                      .nv = I->system->n,
+                      .every = every,
+                      .wait = every - (I->counters.steps - m->first) % every};
+  DVI_TRY(m->keeper->open(m->keeper->user, &trail));
+  I->stepper.trail = &trail;
+  const dvi_status status = dvi__integrator_steps(I, h, count, taken);
+  I->stepper.trail = NULL;
+  DVI_TRY(m->keeper->close(m->keeper->user, &trail));
+  return status;
+}
+
 static dvi_status mechanics_advance_together(void *of, double h, long count, long *taken)
 {
-  return dvi__integrator_steps(((const mechanics *)of)->integrator, h, count, taken);
+  const mechanics *m = of;
+  if (m->keeper != NULL) return advance_with_rows(m, h, count, taken);
+  return dvi__integrator_steps(m->integrator, h, count, taken);
 }
 
 static void mechanics_take_back(void *of)
@@ -152,12 +174,14 @@ static dvi_status check_run_events(const dvi_run_options *options)
 
 /* ---- a run ---- */
 
-/* Tell whether steps may be taken together. If the run may be cancelled, only passes are. */
+/* Tell whether steps may be taken together. If the run may be cancelled, only passes are, and steps
+ * with rows. */
 static int can_advance_together(const mechanics *m)
 {
   const dvi_integrator *I = m->integrator;
   return I->stepper.method->pass != NULL ||
-         (I->monitored == NULL && !dvi_integrator_chooses_steps(I) && m->options->cancel == NULL);
+         (I->monitored == NULL && !dvi_integrator_chooses_steps(I) &&
+          (m->options->cancel == NULL || m->keeper != NULL));
 }
 
 static dvi_status mechanics_run(mechanics *m, dvi_run_report *report)
@@ -177,6 +201,7 @@ static dvi_status mechanics_run(mechanics *m, dvi_run_report *report)
       .value_at_start = event_value_at_start,
       .occurred = event_occurred,
       .observe = given->observe != NULL ? mechanics_observe : NULL,
+      .keeps_rows = m->keeper != NULL,
       .save = mechanics_save};
   const dvi__march_options options = {.h = given->h,
                                       .t_end = given->t_end,
@@ -201,14 +226,21 @@ static dvi_status mechanics_reserve(mechanics *m)
 
 dvi_status dvi_run(dvi_integrator *I, const dvi_run_options *options, dvi_run_report *report)
 {
+  return dvi__run(I, options, NULL, report);
+}
+
+dvi_status dvi__run(dvi_integrator *I, const dvi_run_options *options, const dvi__keeper *keeper,
+                    dvi_run_report *report)
+{
   dvi_run_report own, *out = report != NULL ? report : &own;
-  mechanics m = {.integrator = I, .options = options};
+  mechanics m = {.integrator = I, .options = options, .keeper = keeper};
   *out = (dvi_run_report){.end = DVI_RUN_FAILED, .event_time = (double)NAN, .event = -1};
   if (I == NULL || options == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "run: an argument is NULL");
   if (!I->started)
     return dvi__fail(DVI_BAD_STATE,
                      "run: the integrator has no state yet; call dvi_integrator_start first");
   DVI_TRY(check_run_events(options));
+  m.first = I->counters.steps;
   dvi_status status = mechanics_reserve(&m);
   if (status == DVI_OK) status = mechanics_run(&m, out);
   dvi__release(m.q);

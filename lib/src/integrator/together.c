@@ -16,12 +16,10 @@ static int can_step_together(const dvi_integrator *I, double h)
          dvi__stepper_check_step(&I->stepper, h) == DVI_OK;
 }
 
-enum { TOGETHER = 32 }; /* more steps would hardly save time */
-
 /* Take steps in one pass. They count as one last step. */
 static int steps_in_a_pass(dvi_integrator *I, double h, int steps)
 {
-  double length[TOGETHER];
+  double length[DVI__TOGETHER];
   for (int i = 0; i < steps; i++) length[i] = h;
   dvi__exchange_memory(I);
   I->next.density = I->now.density;
@@ -42,9 +40,11 @@ static int steps_in_passes(dvi_integrator *I, double h, int steps)
 {
   const dvi__method *method = I->stepper.method;
   int taken = 0;
-  if (method->traffic != NULL && method->traffic(&I->stepper, steps) > 0)
+  if (I->stepper.trail == NULL && method->traffic != NULL &&
+      method->traffic(&I->stepper, steps) > 0)
     return steps_in_a_pass(I, h, steps);
-  while (taken < steps && steps_in_a_pass(I, h, 1)) taken++;
+  for (; taken < steps && steps_in_a_pass(I, h, 1); taken++)
+    dvi__trail_put(I->stepper.trail, &I->now);
   return taken;
 }
 
@@ -74,23 +74,37 @@ static int steps_in_a_march(dvi_integrator *I, double h, int steps)
   return taken;
 }
 
+/* March, and put the states into the trail of the stepper. What is not accepted leaves none. */
+static int march_with_trail(dvi_integrator *I, double h, int steps)
+{
+  dvi__trail *trail = I->stepper.trail;
+  const dvi__trail before = trail != NULL ? *trail : (dvi__trail){0};
+  const int taken = steps_in_a_march(I, h, steps);
+  if (taken > 0) dvi__trail_put(trail, &I->now);
+  if (taken == 0 && trail != NULL) *trail = before;
+  return taken;
+}
+
 /* Take steps together. Returns their number, or 0 if that is not possible, and the state has not
  * changed. */
 static int steps_together(dvi_integrator *I, double h, int steps)
 {
   const int marches = I->stepper.marches;
   if ((!marches && I->stepper.method->pass == NULL) || !can_step_together(I, h)) return 0;
-  return marches ? steps_in_a_march(I, h, steps) : steps_in_passes(I, h, steps);
+  return marches ? march_with_trail(I, h, steps) : steps_in_passes(I, h, steps);
 }
 
 /* Between the steps of a march single ones are taken where it stops. */
 dvi_status dvi__integrator_steps(dvi_integrator *I, double h, long count, long *taken)
 {
-  const int steps = count < TOGETHER ? (int)count : TOGETHER;
+  const int steps = count < DVI__TOGETHER ? (int)count : DVI__TOGETHER;
   for (int i = 0; i < steps; *taken = i) {
     const int together = steps_together(I, h, steps - i);
     if (together == 0 && !I->stepper.marches) return DVI_OK;
-    if (together == 0) DVI_TRY(dvi_integrator_step(I, h));
+    if (together == 0) {
+      DVI_TRY(dvi_integrator_step(I, h));
+      dvi__trail_put(I->stepper.trail, &I->now);
+    }
     i += together > 0 ? together : 1;
   }
   return DVI_OK;

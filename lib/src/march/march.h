@@ -52,6 +52,7 @@ typedef struct dvi__marcher {
   /* Take up to `count` steps of h with nothing between them, perhaps in one pass through memory,
    * and give their number. An ordinary step of h must follow. NULL if that is never possible. */
   dvi_status (*advance_together)(void *of, double h, long count, long *taken);
+  int keeps_rows; /* it keeps what `observe` keeps, after the same steps */
 } dvi__marcher;
 
 typedef struct dvi__march_options {

@@ -148,7 +148,8 @@ static long steps_unobserved(const march *m, double h)
   const double left = floor(m->marcher->left(m->of, options->t_end) / h) - 2;
   long count = left < INT_MAX ? (long)left : INT_MAX;
   if (options->event_count > 0 || options->chooses_steps || h != options->h) return 0;
-  if (m->marcher->observe != NULL && every - done % every < count) count = every - done % every;
+  if (m->marcher->observe != NULL && !m->marcher->keeps_rows && every - done % every < count)
+    count = every - done % every;
   if (options->checkpoint != NULL && options->checkpoint_every > 0 &&
       options->checkpoint_every - done % options->checkpoint_every < count)
     count = options->checkpoint_every - done % options->checkpoint_every;

@@ -24,6 +24,24 @@ typedef struct dvi__state {
   double *supplied, *supplied_compensation; /* [1 + symmetries] */
 } dvi__state;
 
+/* Rows for the states after steps that are taken together, one after every `every` steps. */
+typedef struct dvi__trail {
+  int nq, nv;
+  long every, wait; /* steps between two rows, and up to the next one */
+  long rows;        /* number of rows so far */
+  double *t;        /* [rows] */
+  double *q, *p;    /* [rows*nq], [rows*nv], or NULL */
+} dvi__trail;
+
+/* Add a row. */
+void dvi__trail_add(dvi__trail *trail, const dvi__state *state);
+
+/* Count a step, after which there is this state. NULL is allowed. */
+static inline void dvi__trail_put(dvi__trail *trail, const dvi__state *state)
+{
+  if (trail != NULL && --trail->wait == 0) dvi__trail_add(trail, state);
+}
+
 /* Several members of an ensemble side by side. Each is a state with the method's memory, and number
  * i of member k is [i*count + k]. */
 typedef struct dvi__members {
@@ -115,6 +133,7 @@ typedef struct dvi__stepper {
    * sets it, and the driver refuses longer steps for the frequencies that a system declares */
   double stable;
   int marches;       /* create sets it if `march` takes steps of the system */
+  dvi__trail *trail; /* set by the driver: `march` puts the states after all steps but its last */
   int late_hessians; /* the step may ask for Hessians that create has not asked for */
   int follows;       /* the step solves equations and can follow their branch from h = 0 */
   /* set by the driver: follow the branch in at least this many parts (default 0, no following) */

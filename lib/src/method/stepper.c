@@ -223,6 +223,15 @@ dvi_status dvi__inner_step(dvi__stepper *self, dvi__stepper *inner, dvi__state *
   return status;
 }
 
+void dvi__trail_add(dvi__trail *trail, const dvi__state *state)
+{
+  const size_t row = (size_t)trail->rows++, nq = (size_t)trail->nq, nv = (size_t)trail->nv;
+  trail->wait = trail->every;
+  trail->t[row] = state->t;
+  if (trail->q != NULL) memcpy(trail->q + row * nq, state->q, nq * sizeof(double));
+  if (trail->p != NULL) memcpy(trail->p + row * nv, state->p, nv * sizeof(double));
+}
+
 dvi_status dvi__stepper_prepare_lanes(dvi__stepper *stepper, int capacity)
 {
   if (stepper->method->prepare_lanes == NULL) return DVI_OK;

@@ -1,5 +1,6 @@
 /* Recordings of runs. An observer of dvi_run keeps the rows, and events in front of those of the
- * program keep what they find. */
+ * program keep what they find. Where nothing else looks at the steps, they are taken together, and
+ * their states go into the rows at once. */
 #include <dvi/run.h>
 
 #include <math.h>
@@ -9,7 +10,10 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "integrator/integrator_struct.h"
+#include "integrator/run.h"
 #include "record/recording.h"
+#include "system/evaluate/evaluator.h"
+#include "system/evaluate/dynamics.h"
 
 enum {
   KNOWN_PARTS = (1 << DVI__PARTS) - 1,
@@ -18,7 +22,7 @@ enum {
                DVI_RECORD_STEP,
   FIRST_ROWS = 256
 };
-/* More rows than these are not reserved for a run whose steps are known. */
+/* More numbers than these are not reserved for a run whose steps are known. */
 static const double most_reserved = 1e8;
 
 /* An event of the program. */
@@ -45,13 +49,22 @@ typedef struct record {
 
 /* ---- rows ---- */
 
-static void copy_part(const record *r, dvi_record_part part, int count, const double *from)
+/* Remember why a row or an event was not kept, and end the run. */
+static int refuse(record *r, dvi_status status, const char *what)
+{
+  r->status = status;
+  (void)snprintf(r->sentence, sizeof r->sentence, "record: no %s at t = %.9g: %s", what,
+                 dvi_integrator_time(r->integrator), dvi_last_error());
+  return -1;
+}
+
+static void copy_part(const record *r, dvi__row_part part, int count, const double *from)
 {
   double *row = dvi__recording_row(r->recording, part);
   if (row != NULL) memcpy(row, from, (size_t)count * sizeof *row);
 }
 
-static void set_part(const record *r, dvi_record_part part, double number)
+static void set_part(const record *r, dvi__row_part part, double number)
 {
   double *row = dvi__recording_row(r->recording, part);
   if (row != NULL) *row = number;
@@ -61,10 +74,10 @@ static void set_part(const record *r, dvi_record_part part, double number)
 static dvi_status measure_state(const record *r)
 {
   dvi_integrator *I = r->integrator;
-  double *v = dvi__recording_row(r->recording, DVI_RECORD_V),
-         *invariants = dvi__recording_row(r->recording, DVI_RECORD_INVARIANTS),
-         *constraint = dvi__recording_row(r->recording, DVI_RECORD_CONSTRAINT),
-         *reactions = dvi__recording_row(r->recording, DVI_RECORD_REACTIONS);
+  double *v = dvi__recording_row(r->recording, DVI__ROW_V),
+         *invariants = dvi__recording_row(r->recording, DVI__ROW_INVARIANTS),
+         *constraint = dvi__recording_row(r->recording, DVI__ROW_CONSTRAINT),
+         *reactions = dvi__recording_row(r->recording, DVI__ROW_REACTIONS);
   if (v != NULL) DVI_TRY(dvi__integrator_velocity(I, v));
   if (invariants != NULL) DVI_TRY(dvi_integrator_invariants(I, invariants));
   if (constraint != NULL) DVI_TRY(dvi_integrator_constraint(I, constraint));
@@ -76,11 +89,11 @@ static dvi_status measure_state(const record *r)
 static dvi_status record_state(const record *r)
 {
   const dvi_integrator *I = r->integrator;
-  DVI_TRY(dvi__recording_open_row(r->recording));
-  set_part(r, DVI_RECORD_T, dvi_integrator_time(I));
-  set_part(r, DVI_RECORD_STEP, dvi_integrator_last_step(I));
-  copy_part(r, DVI_RECORD_Q, r->recording->nq, dvi_integrator_q(I));
-  copy_part(r, DVI_RECORD_P, r->recording->nv, dvi_integrator_p(I));
+  DVI_TRY(dvi__recording_open_rows(r->recording, 1));
+  set_part(r, DVI__ROW_T, dvi_integrator_time(I));
+  set_part(r, DVI__ROW_STEP, dvi_integrator_last_step(I));
+  copy_part(r, DVI__ROW_Q, r->recording->nq, dvi_integrator_q(I));
+  copy_part(r, DVI__ROW_P, r->recording->nv, dvi_integrator_p(I));
   DVI_TRY(measure_state(r));
   r->recording->rows++;
   return DVI_OK;
@@ -91,15 +104,15 @@ static dvi_status record_point(const record *r, double t)
 {
   const int nq = r->recording->nq, nv = r->recording->nv;
   double *q = r->point, *v = q + nq, *p = v + nv;
-  double *invariants = dvi__recording_row(r->recording, DVI_RECORD_INVARIANTS);
+  double *invariants = dvi__recording_row(r->recording, DVI__ROW_INVARIANTS);
   DVI_TRY(dvi_integrator_interpolate(r->integrator, t, q, v));
-  if (invariants != NULL || dvi__recording_row(r->recording, DVI_RECORD_P) != NULL)
+  if (invariants != NULL || dvi__recording_row(r->recording, DVI__ROW_P) != NULL)
     DVI_TRY(dvi_system_momentum(r->system, t, q, v, p));
-  set_part(r, DVI_RECORD_T, t);
-  set_part(r, DVI_RECORD_STEP, dvi_integrator_last_step(r->integrator));
-  copy_part(r, DVI_RECORD_Q, nq, q);
-  copy_part(r, DVI_RECORD_V, nv, v);
-  copy_part(r, DVI_RECORD_P, nv, p);
+  set_part(r, DVI__ROW_T, t);
+  set_part(r, DVI__ROW_STEP, dvi_integrator_last_step(r->integrator));
+  copy_part(r, DVI__ROW_Q, nq, q);
+  copy_part(r, DVI__ROW_V, nv, v);
+  copy_part(r, DVI__ROW_P, nv, p);
   if (invariants != NULL) DVI_TRY(dvi_system_invariants(r->system, t, q, p, invariants));
   r->recording->rows++;
   return DVI_OK;
@@ -113,22 +126,71 @@ static dvi_status record_times(record *r)
   for (; r->times_done < r->options.time_count; r->times_done++) {
     const double t = r->options.times[r->times_done];
     if (forward * (t - now) > 0) return DVI_OK;
-    DVI_TRY(dvi__recording_open_row(r->recording));
+    DVI_TRY(dvi__recording_open_rows(r->recording, 1));
     DVI_TRY(t == now ? record_state(r) : record_point(r, t));
   }
   return DVI_OK;
 }
 
-/* ---- the run ---- */
+/* ---- rows of steps that are taken together ---- */
 
-/* Remember why a row or an event was not kept, and end the run. */
-static int refuse(record *r, dvi_status status, const char *what)
+/* Parts that follow from time, coordinates and momenta, or from the step of the run. */
+enum {
+  TRAIL_PARTS = DVI_RECORD_T | DVI_RECORD_Q | DVI_RECORD_P | DVI_RECORD_V | DVI_RECORD_INVARIANTS |
+                DVI_RECORD_STEP
+};
+
+/* Tell whether nothing but rows is wanted between steps, of parts that follow from the states. */
+static int keeps_trails(const record *r)
 {
-  r->status = status;
-  (void)snprintf(r->sentence, sizeof r->sentence, "record: no %s at t = %.9g: %s", what,
-                 dvi_integrator_time(r->integrator), dvi_last_error());
-  return -1;
+  const unsigned parts = r->options.parts, derived = DVI_RECORD_V | DVI_RECORD_INVARIANTS;
+  return r->run->observe == NULL && r->run->event_count == 0 && r->options.times == NULL &&
+         (parts & ~(unsigned)TRAIL_PARTS) == 0 &&
+         ((parts & derived) == 0 || ((parts & DVI_RECORD_Q) != 0 && (parts & DVI_RECORD_P) != 0 &&
+                                     !r->system->dynamics->searches_velocity));
 }
+
+static dvi_status open_trail(void *user, dvi__trail *trail)
+{
+  const record *r = user;
+  DVI_TRY(dvi__recording_open_rows(r->recording, DVI__TOGETHER));
+  trail->t = dvi__recording_row(r->recording, DVI__ROW_T);
+  trail->q = dvi__recording_row(r->recording, DVI__ROW_Q);
+  trail->p = dvi__recording_row(r->recording, DVI__ROW_P);
+  return DVI_OK;
+}
+
+/* Evaluate the parts of the open row that follow from its state, as measure_state does. */
+static dvi_status derive_row(const record *r)
+{
+  dvi_integrator *I = r->integrator;
+  const dvi_recording *made = r->recording;
+  const double *t = dvi__recording_row(made, DVI__ROW_T), *q = dvi__recording_row(made, DVI__ROW_Q),
+               *p = dvi__recording_row(made, DVI__ROW_P);
+  double *v = dvi__recording_row(made, DVI__ROW_V),
+         *invariants = dvi__recording_row(made, DVI__ROW_INVARIANTS);
+  set_part(r, DVI__ROW_STEP, r->run->h);
+  if (v == NULL && invariants == NULL) return DVI_OK;
+  if (v == NULL) v = r->point;
+  DVI_TRY(dvi__legendre_inverse(I->evaluator, *t, q, p, v));
+  return invariants != NULL ? dvi__invariants(I->evaluator, *t, q, v, p, invariants) : DVI_OK;
+}
+
+static dvi_status close_trail(void *user, const dvi__trail *trail)
+{
+  record *r = user;
+  for (long k = 0; k < trail->rows; k++) {
+    const dvi_status status = derive_row(r);
+    if (status != DVI_OK) {
+      (void)refuse(r, status, "row");
+      return status;
+    }
+    r->recording->rows++;
+  }
+  return DVI_OK;
+}
+
+/* ---- the run ---- */
 
 static int record_observe(dvi_integrator *integrator, void *user)
 {
@@ -176,7 +238,9 @@ static dvi_status run_recorded(record *r)
     watch_events(r);
     run.events = r->event;
   }
-  const dvi_status status = dvi_run(r->integrator, &run, &r->recording->report);
+  const dvi__keeper keeper = {open_trail, close_trail, r};
+  const dvi_status status = dvi__run(r->integrator, &run, keeps_trails(r) ? &keeper : NULL,
+                                     &r->recording->report);
   return r->status != DVI_OK ? dvi__fail(r->status, "%s", r->sentence) : status;
 }
 
@@ -217,9 +281,10 @@ static int64_t rows_expected(const record *r)
 {
   const double every = r->run->every > 0 ? (double)r->run->every : 1,
                way = r->run->t_end - dvi_integrator_time(r->integrator),
-               rows = floor(way / r->run->h / every) + 3;
+               rows = floor(way / r->run->h / every) + 3 + DVI__TOGETHER,
+               most = most_reserved / dvi__row_width(r->system, r->options.parts);
   if (r->options.times != NULL) return r->options.time_count;
-  if (dvi_integrator_chooses_steps(r->integrator) || !(rows >= 3 && rows <= most_reserved))
+  if (dvi_integrator_chooses_steps(r->integrator) || !(rows >= 3 && rows <= most))
     return FIRST_ROWS;
   return (int64_t)rows;
 }

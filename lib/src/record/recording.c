@@ -15,16 +15,24 @@ static int part_index(dvi_record_part part)
   return k;
 }
 
-static int part_width(const dvi_system *system, int k)
+static int part_width(const dvi_system *system, dvi__row_part part)
 {
-  switch ((dvi_record_part)(1u << k)) {
-  case DVI_RECORD_Q: return dvi_system_nq(system);
-  case DVI_RECORD_P:
-  case DVI_RECORD_V: return dvi_system_nv(system);
-  case DVI_RECORD_INVARIANTS: return dvi_system_invariant_count(system);
-  case DVI_RECORD_REACTIONS: return dvi_system_constraint_count(system);
+  switch (part) {
+  case DVI__ROW_Q: return dvi_system_nq(system);
+  case DVI__ROW_P:
+  case DVI__ROW_V: return dvi_system_nv(system);
+  case DVI__ROW_INVARIANTS: return dvi_system_invariant_count(system);
+  case DVI__ROW_REACTIONS: return dvi_system_constraint_count(system);
   default: return 1;
   }
+}
+
+int dvi__row_width(const dvi_system *system, unsigned parts)
+{
+  int width = 0;
+  for (int k = 0; k < DVI__PARTS; k++)
+    if ((parts >> k & 1) != 0) width += part_width(system, (dvi__row_part)k);
+  return width;
 }
 
 /* ---- arrays that grow ---- */
@@ -52,9 +60,9 @@ static dvi_status reserve_rows(dvi_recording *r, int64_t room)
   return DVI_OK;
 }
 
-dvi_status dvi__recording_open_row(dvi_recording *r)
+dvi_status dvi__recording_open_rows(dvi_recording *r, int more)
 {
-  return r->rows < r->room ? DVI_OK : reserve_rows(r, 2 * r->room);
+  return r->rows + more <= r->room ? DVI_OK : reserve_rows(r, 2 * r->room + more);
 }
 
 static dvi_status reserve_events(dvi_recording *r)
@@ -99,10 +107,11 @@ dvi_status dvi__recording_create(const dvi_system *system, unsigned parts, int64
 {
   dvi_recording *r = DVI_NEW(dvi_recording, 1);
   if (r == NULL) return dvi__fail(DVI_NO_MEMORY, "record: no memory for a recording");
+  r->system = system;
   r->nq = dvi_system_nq(system);
   r->nv = dvi_system_nv(system);
   for (int k = 0; k < DVI__PARTS; k++)
-    r->part[k].width = (parts >> k & 1) != 0 ? part_width(system, k) : 0;
+    r->part[k].width = (parts >> k & 1) != 0 ? part_width(system, (dvi__row_part)k) : 0;
   const dvi_status status = reserve_rows(r, rows);
   if (status == DVI_OK)
     *recording = r;
@@ -119,12 +128,6 @@ void dvi_recording_destroy(dvi_recording **recording)
   dvi__release((*recording)->event_point);
   dvi__release(*recording);
   *recording = NULL;
-}
-
-double *dvi__recording_row(const dvi_recording *r, dvi_record_part part)
-{
-  const dvi__part_rows *rows = &r->part[part_index(part)];
-  return rows->number != NULL ? rows->number + r->rows * rows->width : NULL;
 }
 
 int64_t dvi_recording_rows(const dvi_recording *r)

@@ -3,7 +3,18 @@
 #define DVI_RECORD_RECORDING_H
 #include <dvi/run.h>
 
-enum { DVI__PARTS = 8 };
+/* The parts of a row, of which part k has the bit 1 << k in dvi_record_part. */
+typedef enum dvi__row_part {
+  DVI__ROW_T,
+  DVI__ROW_Q,
+  DVI__ROW_P,
+  DVI__ROW_V,
+  DVI__ROW_INVARIANTS,
+  DVI__ROW_STEP,
+  DVI__ROW_CONSTRAINT,
+  DVI__ROW_REACTIONS,
+  DVI__PARTS
+} dvi__row_part;
 
 /* The numbers of one part. */
 typedef struct dvi__part_rows {
@@ -12,24 +23,32 @@ typedef struct dvi__part_rows {
 } dvi__part_rows;
 
 struct dvi_recording {
-  dvi__part_rows part[DVI__PARTS]; /* part k has the bit 1 << k */
+  dvi__part_rows part[DVI__PARTS];
   int64_t rows, room;
   dvi_recorded_event *event; /* [event_room], whose q and v are set by dvi_recording_event */
   double *event_point;       /* [event_room*(nq+nv)] */
   int64_t events, event_room;
+  const dvi_system *system;
   int nq, nv;
   dvi_run_report report;
 };
+
+/* Count the numbers of a row with these parts. */
+int dvi__row_width(const dvi_system *system, unsigned parts);
 
 /* Make a recording without rows for parts of a system, with room for some rows. */
 dvi_status dvi__recording_create(const dvi_system *system, unsigned parts, int64_t rows,
                                  dvi_recording **recording);
 
-/* Make room for one more row. The row is `rows`, until the caller counts it. */
-dvi_status dvi__recording_open_row(dvi_recording *recording);
+/* Make room for more rows. The first is `rows`, until the caller counts it. */
+dvi_status dvi__recording_open_rows(dvi_recording *recording, int more);
 
-/* Return the numbers of a part in the row that is open, or NULL if the part is not kept. */
-double *dvi__recording_row(const dvi_recording *recording, dvi_record_part part);
+/* Return the numbers of a part in the first row that is open, or NULL if the part is not kept. */
+static inline double *dvi__recording_row(const dvi_recording *recording, dvi__row_part part)
+{
+  const dvi__part_rows *rows = &recording->part[part];
+  return rows->number != NULL ? rows->number + recording->rows * rows->width : NULL;
+}
 
 /* Keep an event. */
 dvi_status dvi__recording_add_event(dvi_recording *recording, int event, double t, const double *q,

@@ -116,7 +116,10 @@ int dvi__element_march(dvi__stepper *self, dvi__state *state, dvi__state *last, 
   own->duration = h;
   own->rung = DVI__FIXED_POINT;
   for (; taken < most && march_solve(self, state, h, taken, &steps); taken++) {
-    if (taken > 0) march_keep(n, state, last);
+    if (taken > 0) {
+      march_keep(n, state, last);
+      dvi__trail_put(self->trail, state);
+    }
     dvi__element_advance(self, state, h);
     if (dvi__first_not_finite(2 * (size_t)n, state->q) >= 0) return 0;
   }
