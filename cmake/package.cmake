@@ -6,10 +6,12 @@ set(package_directory "${CMAKE_INSTALL_LIBDIR}/cmake/dvi")
 
 install(DIRECTORY lib/include/dvi DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
 install(TARGETS dvi dvi_scene EXPORT dviTargets)
+# Programs do not link this one, libdvi loads it.
+install(TARGETS dvi_sundials LIBRARY NAMELINK_SKIP)
 install(TARGETS dvi_static EXPORT dviStaticTargets)
-set_target_properties(dvi_scene PROPERTIES INSTALL_RPATH "$ORIGIN")
-# A SUNDIALS from a prefix is found after the installation, too.
-set_target_properties(dvi PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)
+set_target_properties(dvi dvi_scene PROPERTIES INSTALL_RPATH "$ORIGIN")
+# Libraries from a prefix are found after the installation, too.
+set_target_properties(dvi dvi_sundials PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)
 if(TARGET dvi_command)
   file(RELATIVE_PATH to_libraries "${CMAKE_INSTALL_FULL_BINDIR}" "${CMAKE_INSTALL_FULL_LIBDIR}")
   set_target_properties(

@@ -65,6 +65,23 @@ if [ -n "$(find "$prefix" -name dvi_hdf5.so)" ]; then
     2>"$work/log" || { cat "$work/log"; fail "the installed command writes no HDF5"; }
 fi
 
+say "SUNDIALS, loaded on demand"
+helper=$(find "$prefix" -name 'libdvi-sundials.so.?.?')
+[ -n "$helper" ] || fail "the library that loads SUNDIALS is not there"
+orbit() { "$prefix/bin/dvi" run kepler --h 0.1 --t-end 1 --method "$1" >"$work/log" 2>&1; }
+orbit galerkin:solver=kinsol || { cat "$work/log"; fail "SUNDIALS does not work"; }
+mv "$helper" "$helper.away"
+orbit galerkin || {
+  cat "$work/log"
+  fail "a run without SUNDIALS asks for it"
+}
+if orbit galerkin:solver=kinsol ||
+  ! grep -q 'SUNDIALS cannot be loaded: libdvi-sundials' "$work/log"; then
+  cat "$work/log"
+  fail "no sentence on a SUNDIALS that cannot be loaded"
+fi
+mv "$helper.away" "$helper"
+
 say "scenes and pages"
 "$prefix/bin/dvi" check "$prefix/share/dvi/scenes/kepler.yaml" >"$work/log" 2>&1 || {
   cat "$work/log"
