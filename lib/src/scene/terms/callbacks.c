@@ -550,14 +550,24 @@ static int term_tangent(double t, const double *q, double *T, void *user)
   return second_at(term, 1, x, values);
 }
 
+static int term_gap(double t, const double *q, double *phi, void *user)
+{
+  return term_holonomic_value(1, &t, q, phi, user);
+}
+
+static int term_gap_gradient(double t, const double *q, double *phi_q, void *user)
+{
+  return term_holonomic_gradient(1, &t, q, phi_q, user);
+}
+
 bool dvi__make_contact(dvi_scene *scene, dvi__scene_term *gap, dvi__scene_term *tangent,
                        dvi_contact *contact)
 {
   dvi_holonomic phi;
   int full;
   if (!dvi__make_holonomic(scene, contact->name, gap, &phi)) return false;
-  contact->gap = phi.value;
-  contact->gradient = phi.gradient;
+  contact->gap = term_gap;
+  contact->gradient = term_gap_gradient;
   contact->rate = phi.rate;
   contact->gradients = phi.gradients;
   contact->user = gap;
