@@ -7,6 +7,7 @@
 #include "core/status.h"
 #include "num/simd/small_inverse.h"
 #include "num/simd/wide.h"
+#include "num/simd/width.h"
 
 /* Largest block. Inverting and multiplying it takes the cubes and squares of its size, where
  * factors of its sparse pattern may take less. */
@@ -184,4 +185,36 @@ WIDE static void solve_blocks(const dvi__blocks *blocks, const double *A, double
 void dvi__blocks_solve(const dvi__blocks *blocks, const double *numbers, double *R)
 {
   solve_blocks(blocks, numbers + 1 + blocks->entries, R);
+}
+
+INLINE void add_products(size_t width, const double *restrict column, const double *restrict by,
+                         double *restrict sum)
+{
+  for (size_t k = 0; k < width; k++) sum[k] += column[k] * by[k];
+}
+
+WIDE static void solve_members(const dvi__blocks *blocks, size_t width, size_t stride,
+                               const double *A, double *R, double *sum)
+{
+  for (int b = 0; b < blocks->count; b++) {
+    const int m = blocks->first[b + 1] - blocks->first[b],
+              *unknown = blocks->unknown + blocks->first[b];
+    memset(sum, 0, (size_t)m * width * sizeof *sum);
+    for (int j = 0; j < m; j++)
+      for (int i = 0; i < m; i++, A += stride)
+        add_products(width, A, R + (size_t)unknown[j] * width, sum + (size_t)i * width);
+    for (int i = 0; i < m; i++)
+      memcpy(R + (size_t)unknown[i] * width, sum + (size_t)i * width, width * sizeof *sum);
+  }
+}
+
+void dvi__blocks_solve_members(const dvi__blocks *blocks, int width, int stride,
+                               const double *inverses, double *R, double *work)
+{
+  solve_members(blocks, (size_t)width, (size_t)stride, inverses, R, work);
+}
+
+size_t dvi__blocks_inverses(const dvi__blocks *blocks)
+{
+  return 1 + blocks->entries;
 }

@@ -209,7 +209,7 @@ static dvi_status newton_jacobian(void *of, const double *Y, double *values)
                                  : dvi__action_jacobian(own->action, Y, values);
 }
 
-static dvi_status newton_invert_blocks(const dvi__element *own, const double *Y, double *inverse)
+dvi_status dvi__element_invert_blocks(const dvi__element *own, const double *Y, double *inverse)
 {
   own->counters->jacobians++;
   DVI_TRY(dvi__action_jacobian(own->action, Y, dvi__blocks_jacobian(own->blocks)));
@@ -220,7 +220,7 @@ static dvi_status newton_freeze(void *of, const double *Y)
 {
   const dvi__element *own = of;
   double *point = own->frozen + DVI__FROZEN_POINT;
-  if (own->by_blocks) return own->keeps ? DVI_OK : newton_invert_blocks(own, Y, point);
+  if (own->by_blocks) return own->keeps ? DVI_OK : dvi__element_invert_blocks(own, Y, point);
   if (own->keeps_whole) {
     if (!own->keeps) DVI_TRY(dvi__solver_jacobian(own->solver, Y, point));
     return dvi__solver_take_jacobian(own->solver, point);

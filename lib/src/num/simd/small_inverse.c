@@ -183,3 +183,57 @@ void dvi__near_one_times(int n, const double *inverse, double *x)
 {
   near_one_times(n, inverse, x);
 }
+
+/* ---- of several members ---- */
+
+/* The sums with 0 are those of divide_column, by which a zero may lose its sign. */
+INLINE void divide_abreast(int n, int k, dvi__abreast *column, int *regular)
+{
+  const int first = k / BLOCK * BLOCK, end = first + BLOCK < n ? first + BLOCK : n;
+  const dvi__abreast pivot = column[k], by = 1 / pivot;
+  for (int lane = 0; lane < DVI__ABREAST; lane++)
+    regular[lane] &= (pivot[lane] > least_pivot) & (pivot[lane] < largest_pivot);
+  for (int i = 0; i < n; i++) column[i] *= by;
+  for (int i = first; i < end; i++) column[i] += by * (i == k ? 1.0 : 0.0);
+}
+
+INLINE void subtract_abreast(int n, const dvi__abreast *x, dvi__abreast factor, dvi__abreast *y)
+{
+  for (int i = 0; i < n; i++) y[i] -= factor * x[i];
+}
+
+/* Eliminate two rows from two columns in one pass, which loads the divided columns once. */
+INLINE void eliminate_from_pair(int n, int k, const dvi__abreast *one, const dvi__abreast *two,
+                                dvi__abreast *y)
+{
+  const dvi__abreast both = one[k + 1], *z = y + n, y_one = y[k], z_one = z[k],
+                     y_two = y[k + 1] - y_one * both, z_two = z[k + 1] - z_one * both;
+  for (int i = 0; i < n; i++) {
+    y[i] = (y[i] - y_one * one[i]) - y_two * two[i];
+    y[n + i] = (z[i] - z_one * one[i]) - z_two * two[i];
+  }
+}
+
+INLINE void eliminate_two_abreast(int n, int k, dvi__abreast *A, int *regular)
+{
+  dvi__abreast *one = A + k * n, *two = one + n;
+  divide_abreast(n, k, one, regular);
+  subtract_abreast(n, one, two[k], two);
+  divide_abreast(n, k + 1, two, regular);
+  const dvi__abreast both = one[k + 1];
+  for (int j = 0; j < n; j += 2)
+    if (j != k) eliminate_from_pair(n, k, one, two, A + j * n);
+  one[k] -= 1;
+  subtract_abreast(n, two, both, one);
+  two[k + 1] -= 1;
+}
+
+WIDE static void near_one_invert_abreast(int n, dvi__abreast *A, int *regular)
+{
+  for (int k = 0; k < n; k += 2) eliminate_two_abreast(n, k, A, regular);
+}
+
+void dvi__near_one_invert_abreast(int n, dvi__abreast *A, int regular[DVI__ABREAST])
+{
+  near_one_invert_abreast(n, A, regular);
+}
