@@ -5,7 +5,10 @@
 
 python=
 for candidate in python3 /usr/bin/python3; do
-  if "$candidate" -c 'import h5py' 2>/dev/null; then python=$candidate; break; fi
+  if "$candidate" -c 'import importlib.util as u, sys; sys.exit(not u.find_spec("h5py"))'; then
+    python=$candidate
+    break
+  fi
 done
 [ -n "$python" ] || { echo 'no python3 has h5py'; exit 77; }
 if ! "$dvi" run kepler --method verlet --h 0.1 --t-end 1 --out probe.h5 2>err; then
