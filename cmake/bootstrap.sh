@@ -2,6 +2,7 @@
 # From a bare Debian (12 or later) or Ubuntu (24.04 or later) to a built, run and tested libdvi:
 #   sh cmake/bootstrap.sh demo    build, and study the Kepler problem and a pendulum in space
 #   sh cmake/bootstrap.sh test    build, and run all tests that a user needs to trust the build
+#   sh cmake/bootstrap.sh site    make an HTML site of the pages, with search, in build/site/html
 #   sh cmake/bootstrap.sh lint    install more tools, run every gate, and all tests under sanitizers
 #   sh cmake/bootstrap.sh long    run for hours: full studies, the analyzer on all sources, fuzzing
 # Missing packages are installed by apt-get, with sudo if needed. With CI=true in the environment
@@ -9,15 +10,18 @@
 set -eu
 
 packages="gcc g++ libc6-dev make cmake pkg-config libsundials-dev libsuitesparse-dev liblapack-dev
-  libarpack2-dev libyaml-dev check gnuplot-nox
-  python3-dev python3-cffi python3-numpy python3-setuptools python3-pytest"
-lint_packages="clang clang-tidy clang-format cppcheck doxygen valgrind libc6-dbg libclang-rt-dev"
+  libarpack2-dev libyaml-dev libhdf5-dev check gnuplot-nox
+  python3-dev python3-cffi python3-numpy python3-h5py python3-setuptools python3-pytest"
+site_packages="python3 mkdocs"
+lint_packages="$site_packages clang clang-tidy clang-format cppcheck doxygen valgrind libc6-dbg
+  libclang-rt-dev"
 
 usage() {
   cat >&2 <<'END'
-usage: sh cmake/bootstrap.sh demo|test|lint|long
+usage: sh cmake/bootstrap.sh demo|test|site|lint|long
   demo   build, and run three studies; plots go to build/demo/
   test   build, and run the tests
+  site   make an HTML site of the pages, with search, in build/site/html
   lint   run every gate, and the tests in a build with sanitizers
   long   run what continuous integration leaves out because it takes too long
 END
@@ -52,7 +56,7 @@ explain_by_hand() {
   cat >&2 <<END
 bootstrap: this system is neither Debian 12 or later nor Ubuntu 24.04 or later: please install what
 is needed yourself: a C11 compiler, make, CMake 3.22 or later, pkg-config, SUNDIALS 6.4 to 7 with
-KLU, SuiteSparse, LAPACK, ARPACK, libyaml, Check, gnuplot and, for a test, a C++ compiler;
+KLU, SuiteSparse, LAPACK, ARPACK, libyaml, HDF5, Check, gnuplot and, for a test, a C++ compiler;
 for lint also clang, clang-tidy, clang-format, cppcheck, Doxygen and valgrind. On Debian these
 packages are called
   $packages
@@ -90,6 +94,7 @@ install_packages() {
 }
 
 # build PRESET [OPTION...]: configure and build; output only if it fails, or if there are warnings.
+# Messages of progress, which nobody sees, would start one more process for each source.
 build() {
   preset=$1
   shift
@@ -98,7 +103,7 @@ build() {
   say "building: $preset"
   mkdir -p build
   if ! {
-    cmake --preset "$preset" -DDVI_WERROR=$werror "$@" &&
+    cmake --preset "$preset" -DDVI_WERROR=$werror -DCMAKE_RULE_MESSAGES=OFF "$@" &&
       cmake --build --preset "$preset" -j "$cores"
   } >"build/$preset.log" 2>&1; then
     tail -n 60 "build/$preset.log" >&2
@@ -161,7 +166,8 @@ lint() {
   build lint
   run_tests lint || status=1
   build asan
-  DVI_FUZZ_SECONDS=${DVI_FUZZ_SECONDS:-30} run_tests asan || status=1
+  # The texts are the same in every run: `long` tries more of them.
+  DVI_FUZZ_SECONDS=${DVI_FUZZ_SECONDS:-10} run_tests asan || status=1
   [ $status -eq 0 ] || refuse "a gate failed, see above"
 }
 
@@ -176,6 +182,14 @@ long() {
   [ $status -eq 0 ] || refuse "a study failed, see above"
 }
 
+site() {
+  install_packages "$site_packages"
+  mkdir -p build/site
+  python3 cmake/site.py build/site || refuse "the site could not be made, see above"
+  say "open build/site/html/index.html; the search needs a server, such as" \
+    "python3 -m http.server -d build/site/html"
+}
+
 [ $# -eq 1 ] || usage
 cd "$(dirname "$0")/.."
 cores=$(getconf _NPROCESSORS_ONLN 2>/dev/null || echo 1)
@@ -186,6 +200,7 @@ case $1 in
     build release
     run_tests release -LE "lint|long"
     ;;
+  site) site ;;
   lint) lint ;;
   long) long ;;
   *) usage ;;

@@ -14,9 +14,13 @@ set_target_properties(dvi dvi_scene PROPERTIES INSTALL_RPATH "$ORIGIN")
 set_target_properties(dvi dvi_sundials PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)
 if(TARGET dvi_command)
   file(RELATIVE_PATH to_libraries "${CMAKE_INSTALL_FULL_BINDIR}" "${CMAKE_INSTALL_FULL_LIBDIR}")
-  set_target_properties(dvi_command PROPERTIES INSTALL_RPATH "$ORIGIN/${to_libraries}"
-                                               INSTALL_RPATH_USE_LINK_PATH ON)
+  set_target_properties(
+    dvi_command PROPERTIES INSTALL_RPATH "$ORIGIN/${to_libraries};$ORIGIN/${to_libraries}/dvi"
+                           INSTALL_RPATH_USE_LINK_PATH ON)
   install(TARGETS dvi_command)
+endif()
+if(TARGET dvi_hdf5)
+  install(TARGETS dvi_hdf5 DESTINATION "${CMAKE_INSTALL_LIBDIR}/dvi")
 endif()
 file(GLOB scenes CONFIGURE_DEPENDS apps/scenes/*.yaml apps/scenes/*/*.yaml)
 install(FILES ${scenes} DESTINATION "${CMAKE_INSTALL_DATADIR}/dvi/scenes")

@@ -1,3 +1,4 @@
+#define _POSIX_C_SOURCE 200809L
 #include "cli/command.h"
 
 #include <dvi/scene.h>
@@ -14,6 +15,32 @@ static void print_sentence(const char *format, va_list arguments)
   char sentence[SENTENCE_SIZE];
   (void)vsnprintf(sentence, sizeof sentence, format, arguments);
   (void)fprintf(stderr, "dvi: %s\n", sentence);
+}
+
+/* Write a word in quotes unless it is plain. */
+static void spell_word(FILE *stream, const char *word)
+{
+  static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+                              "-_.,:/=+@%^";
+  if (word[0] != '\0' && word[strspn(word, plain)] == '\0') {
+    (void)fprintf(stream, " %s", word);
+    return;
+  }
+  (void)fputs(" '", stream);
+  for (; *word != '\0'; word++) (void)fprintf(stream, *word == '\'' ? "'\\'%c'" : "%c", *word);
+  (void)fputc('\'', stream);
+}
+
+char *command_spelled(const char *name, int argc, char *const *argv)
+{
+  char *text = NULL;
+  size_t size;
+  FILE *stream = open_memstream(&text, &size);
+  if (stream == NULL) return NULL;
+  (void)fprintf(stream, "dvi %s", name);
+  for (int i = 0; i < argc; i++) spell_word(stream, argv[i]);
+  (void)fclose(stream);
+  return text;
 }
 
 void complain(const char *format, ...)

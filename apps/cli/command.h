@@ -35,6 +35,10 @@ int solve_command(int argc, char **argv);
 int spectrum_command(int argc, char **argv);
 int plot_command(int argc, char **argv);
 
+/** Spell a command line, "dvi NAME ARGUMENTS..", as a shell takes it. To be freed, NULL without
+ * memory. */
+char *command_spelled(const char *name, int argc, char *const *argv);
+
 /** Print "dvi: <sentence>" to standard error. */
 void complain(const char *format, ...) __attribute__((format(printf, 1, 2)));
 

@@ -361,7 +361,12 @@ static const char *const details[] = {
     "An alarm changes nothing in the run: standard error says at the end when the invariant's size "
     "first passed the bound,\n"
     "and how large it was at most; the exit code is 0.\n",
-    "FILEs are written whole or not at all: a run that fails leaves what was there. Rows on "
+    "FILE.h5 has the dataset rows, with the names of its columns in the attribute columns. It "
+    "grows in its place, and can be\n"
+    "read on the way, and up to the last second of a run that was killed; with --resume rows are "
+    "appended to it, and those\n"
+    "behind the checkpoint are cut off first, so that it has the rows of an uninterrupted run.\n",
+    "Other FILEs are written whole or not at all: a run that fails leaves what was there. Rows on "
     "standard output come\n"
     "as they are computed. Ctrl-C, SIGTERM and SIGHUP end a run after the current step, with the "
     "output complete, the\n"
@@ -452,7 +457,7 @@ static const option command_options[] = {
     {.name = "out",
      OPTION_AT(run_request, out),
      .value = "FILE",
-     .help = "where the rows go; left out, or -: standard output"},
+     .help = "where the rows go, as HDF5 if its name ends in .h5; left out, or -: standard output"},
     {.name = "events",
      OPTION_AT(run_request, events),
      .value = "FILE.csv",
@@ -487,9 +492,9 @@ static const option command_options[] = {
      .help = "with --verify: its table as CSV"},
     {.name = "pvd",
      OPTION_AT(run_request, pvd),
-     .value = "FILE.pvd",
+     .value = "FILE.pvd|FILE.vtkhdf",
      .help = "of a field: write it at each row beside, as FILE_000000.vtu and so on, and their "
-             "list for ParaView"},
+             "list for ParaView, or as one file of HDF5"},
     {.name = "map",
      OPTION_AT(run_request, map),
      .value = "FILE.svg",
@@ -523,5 +528,9 @@ int run_command(int argc, char **argv)
   int code;
   if (!options_parse(&command, argc, argv, &r, &name, &code)) return code;
   code = run_check_request(&r, name);
-  return code == DONE ? run_problem(&r, name) : code;
+  if (code != DONE) return code;
+  r.command = command_spelled("run", argc, argv);
+  code = run_problem(&r, name);
+  free(r.command);
+  return code;
 }

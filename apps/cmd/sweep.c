@@ -13,6 +13,8 @@
 #include "cli/options.h"
 #include "cli/progress.h"
 #include "cli/signals.h"
+#include "store/store.h"
+#include "store/table_output.h"
 #include "sweep/sweep_part.h"
 #include "sweep/sweep_point.h"
 #include "cli/way.h"
@@ -20,7 +22,8 @@
 /* The state of a sweep. The lock guards the members below it. */
 typedef struct sweep {
   const sweep_task *task;
-  long points, there; /* number of all points, and of those that an earlier sweep left */
+  const char *command; /* the command line */
+  long points, there;  /* number of all points, and of those that an earlier sweep left */
   pthread_mutex_t lock;
   sweep_row *row; /* [points] a row without a text is still to be run */
   long next;      /* point where the search for such a row goes on */
@@ -30,6 +33,13 @@ typedef struct sweep {
   bool lost;    /* a row could not be written, or had no memory */
   bool written; /* all rows are written to their destination */
 } sweep;
+
+typedef struct sweep_request {
+  const char *out;
+  long threads; /* 0 if not given */
+  words settings;
+  char *command; /* the command line */
+} sweep_request;
 
 static const char ended[] =
     "dvi: sweep: a signal ended the sweep; the same command goes on where it stopped\n";
@@ -85,8 +95,42 @@ static long count_rows(const sweep *s, bool failed_only)
   return count;
 }
 
+/* Spell the header of the table. To be freed, NULL without memory. */
+static char *spell_header(const sweep_task *task)
+{
+  char *text = NULL;
+  size_t size;
+  FILE *stream = open_memstream(&text, &size);
+  if (stream == NULL) return NULL;
+  sweep_header(task, stream);
+  (void)fclose(stream);
+  return text;
+}
+
+static bool sweep_store_rows(const sweep *s, const char *path)
+{
+  const sweep_task *task = s->task;
+  fact_list facts = {.count = 0};
+  char *header = spell_header(task);
+  const char **line = calloc((size_t)s->points, sizeof *line);
+  bool good = header != NULL && line != NULL;
+  if (!good) complain("out of memory");
+  for (long k = 0; k < s->points && good; k++) line[k] = s->row[k].text;
+  good = good && facts_add_problem(&facts, task->model, s->command);
+  facts_add_text(&facts, "method", task->method != NULL ? task->method : task->model->method,
+                 false);
+  facts_add_number(&facts, "h", isnan(task->h) ? task->model->h : task->h, false);
+  facts_add_number(&facts, "t_end", isnan(task->t_end) ? task->model->t_end : task->t_end, false);
+  good = good && table_output_write(path, &facts, header, s->points, line);
+  facts_clear(&facts);
+  free(line);
+  free(header);
+  return good;
+}
+
 static bool sweep_write_rows(const sweep *s, const char *path)
 {
+  if (store_is_wanted(path)) return sweep_store_rows(s, path);
   whole_file out;
   if (!file_open(&out, path)) return false;
   sweep_header(s->task, out.stream);
@@ -106,9 +150,10 @@ static int sweep_finish(sweep *s, const char *path)
   return FAILED;
 }
 
-static int sweep_all(const sweep_task *task, long threads, const char *path)
+static int sweep_all(const sweep_task *task, const sweep_request *request)
 {
-  sweep s = {.task = task, .points = task->grid.points};
+  sweep s = {.task = task, .command = request->command, .points = task->grid.points};
+  const char *path = request->out;
   int code = FAILED;
   s.row = calloc((size_t)s.points, sizeof *s.row);
   (void)pthread_mutex_init(&s.lock, NULL);
@@ -118,7 +163,7 @@ static int sweep_all(const sweep_task *task, long threads, const char *path)
     s.there = count_rows(&s, false);
     if (s.there > 0)
       complain("sweep: %ld of %ld points are in '%s' already", s.there, s.points, s.part.path);
-    sweep_run_points(&s, threads);
+    sweep_run_points(&s, request->threads > 0 ? request->threads : parallel_cores());
     code = sweep_finish(&s, path);
   }
   sweep_part_close(&s.part, s.written);
@@ -129,12 +174,6 @@ static int sweep_all(const sweep_task *task, long threads, const char *path)
 }
 
 /* ---- request ---- */
-
-typedef struct sweep_request {
-  const char *out;
-  long threads; /* 0 if not given */
-  words settings;
-} sweep_request;
 
 /* Check the task. Errors at all points are reported before the first one. */
 static int check_task(const sweep_task *task)
@@ -161,7 +200,8 @@ static int sweep_check_request(const sweep_request *request)
                        "interrupted sweep goes on from there");
   if (request->threads > THREADS_MAX)
     return usage_error("sweep: at most %d threads", (int)THREADS_MAX);
-  return file_writable(request->out) ? DONE : FAILED;
+  if (!file_writable(request->out)) return FAILED;
+  return !store_is_wanted(request->out) || store_module(request->out) != NULL ? DONE : FAILED;
 }
 
 static int sweep_run_request(const sweep_request *request, sweep_task *task)
@@ -175,9 +215,7 @@ static int sweep_run_request(const sweep_request *request, sweep_task *task)
   task->model = model;
   if (code == DONE) code = grid_complete(model, &task->grid);
   if (code == DONE) code = check_task(task);
-  if (code == DONE)
-    code = sweep_all(task, request->threads > 0 ? request->threads : parallel_cores(),
-                     request->out);
+  if (code == DONE) code = sweep_all(task, request);
   problem_destroy(&model);
   grid_clear(&task->grid);
   free(task->text.text);
@@ -201,7 +239,10 @@ static const char *const details[] = {
     "was, goes on from there when\n"
     "the same command is given again; with another scene, method, step, end or values it is "
     "refused. When all points are\n"
-    "there, FILE.csv is written whole.\n",
+    "there, FILE.csv is written whole. FILE.h5 has the columns of numbers in the dataset rows, "
+    "their "
+    "names in its attribute\n"
+    "columns, and status in the group text.\n",
     "Examples:\n"
     "  dvi init cart.yaml\n"
     "  dvi sweep cart.yaml --out cart.csv\n"
@@ -239,14 +280,14 @@ static const option command_options[] = {
      .help = "runs at a time; default: as many as there are cores"},
     {.name = "out",
      OPTION_AT(sweep_line, request.out),
-     .value = "FILE.csv",
-     .help = "where the rows go"},
+     .value = "FILE.csv|FILE.h5",
+     .help = "where the rows go, as HDF5 if the name ends in .h5"},
     {.name = NULL},
 };
 
 static const command_line command = {
     .name = "sweep",
-    .synopsis = "PROBLEM --out FILE.csv [--set NAME=VALUES ...] [OPTIONS]",
+    .synopsis = "PROBLEM --out FILE.csv|FILE.h5 [--set NAME=VALUES ...] [OPTIONS]",
     .operand = "PROBLEM",
     .summary = "Run a problem at each point of a grid of parameters, on all cores, and write the "
                "ends as CSV.\n",
@@ -264,5 +305,8 @@ int sweep_command(int argc, char **argv)
   if (code == DONE) code = scene_spared("sweep", r.task.operand, 1, &out);
   if (code != DONE) return code;
   signals_end(true, ended);
-  return sweep_run_request(&r.request, &r.task);
+  r.request.command = command_spelled("sweep", argc, argv);
+  code = sweep_run_request(&r.request, &r.task);
+  free(r.request.command);
+  return code;
 }

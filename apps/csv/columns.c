@@ -1,13 +1,13 @@
 #include "csv/columns.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "cli/command.h"
 #include "csv/balance.h"
 #include "csv/choice.h"
-#include "csv/table.h"
 #include "csv/velocity.h"
 
 /* ---- columns of a run ---- */
@@ -156,16 +156,6 @@ void columns_clear(run_columns *c)
 
 /* ---- rows ---- */
 
-void columns_header(const run_columns *c, FILE *stream)
-{
-  (void)fputs("t", stream);
-  for (int k = 0; k < c->count; k++) {
-    (void)fputc(',', stream);
-    csv_text(stream, c->column[k].name);
-  }
-  (void)fputc('\n', stream);
-}
-
 static dvi_status columns_evaluate(run_columns *c, dvi_integrator *integrator)
 {
   const double t = dvi_integrator_time(integrator), *q = dvi_integrator_q(integrator),
@@ -226,10 +216,8 @@ double columns_number(const run_columns *c, const dvi_integrator *integrator, in
   }
 }
 
-void columns_row(const run_columns *c, const dvi_integrator *integrator, FILE *stream)
+void columns_row(const run_columns *c, const dvi_integrator *integrator, double *row)
 {
-  (void)fprintf(stream, "%.17g", dvi_integrator_time(integrator));
-  for (int k = 0; k < c->count; k++)
-    (void)fprintf(stream, ",%.17g", columns_number(c, integrator, k));
-  (void)fputc('\n', stream);
+  row[0] = dvi_integrator_time(integrator);
+  for (int k = 0; k < c->count; k++) row[k + 1] = columns_number(c, integrator, k);
 }

@@ -3,7 +3,6 @@
 #ifndef COLUMNS_H
 #define COLUMNS_H
 #include <stdbool.h>
-#include <stdio.h>
 
 #include "csv/reactions.h"
 #include "problem.h"
@@ -61,8 +60,6 @@ int columns_choose(run_columns *columns, const problem *scene, const dvi_integra
 
 void columns_clear(run_columns *columns);
 
-void columns_header(const run_columns *columns, FILE *stream);
-
 /** Evaluate the quantities of a row. Complains and returns false if one of them is not a finite
  * number. */
 bool columns_measure(run_columns *columns, dvi_integrator *integrator);
@@ -70,6 +67,6 @@ bool columns_measure(run_columns *columns, dvi_integrator *integrator);
 /** Return the number of shown column k at the state, as measured. */
 double columns_number(const run_columns *columns, const dvi_integrator *integrator, int k);
 
-/** Write the row of the state, as measured. */
-void columns_row(const run_columns *columns, const dvi_integrator *integrator, FILE *stream);
+/** Give the row [1 + count] of the state, as measured: the time and the shown columns. */
+void columns_row(const run_columns *columns, const dvi_integrator *integrator, double *row);
 #endif

@@ -7,7 +7,6 @@
 
 #include "cli/command.h"
 #include "csv/choice.h"
-#include "csv/table.h"
 #include "load/density.h"
 
 /* ---- what there is ---- */
@@ -140,16 +139,6 @@ void field_columns_clear(field_columns *columns)
 
 /* ---- rows ---- */
 
-void field_columns_header(const field_columns *columns, FILE *stream)
-{
-  (void)fputc('t', stream);
-  for (int i = 0; i < columns->count; i++) {
-    (void)fputc(',', stream);
-    csv_text(stream, columns->column[i].name);
-  }
-  (void)fputc('\n', stream);
-}
-
 static bool measure(field_columns *c, int i, const double *q, const double *p)
 {
   const field_column *column = c->column + i;
@@ -183,9 +172,8 @@ bool field_columns_measure(field_columns *columns)
   return true;
 }
 
-void field_columns_row(const field_columns *columns, FILE *stream)
+void field_columns_row(const field_columns *columns, double *row)
 {
-  (void)fprintf(stream, "%.17g", dvi_march_time(columns->march));
-  for (int i = 0; i < columns->count; i++) (void)fprintf(stream, ",%.17g", columns->number[i]);
-  (void)fputc('\n', stream);
+  row[0] = dvi_march_time(columns->march);
+  for (int i = 0; i < columns->count; i++) row[i + 1] = columns->number[i];
 }

@@ -3,7 +3,6 @@
 #define FIELD_COLUMNS_H
 #include <dvi/march.h>
 #include <stdbool.h>
-#include <stdio.h>
 
 #include "problem.h"
 
@@ -31,11 +30,9 @@ int field_columns_choose(field_columns *columns, const problem *scene, const dvi
                          const char *asked);
 void field_columns_clear(field_columns *columns);
 
-void field_columns_header(const field_columns *columns, FILE *stream);
-
 /** Evaluate the columns. Complains and returns false if one of them fails or is not finite. */
 bool field_columns_measure(field_columns *columns);
 
-/** Write the row, as measured. */
-void field_columns_row(const field_columns *columns, FILE *stream);
+/** Give the row [1 + count], as measured: the time and the shown columns. */
+void field_columns_row(const field_columns *columns, double *row);
 #endif

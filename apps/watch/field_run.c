@@ -12,11 +12,13 @@
 #include "load/density.h"
 #include "load/elastic.h"
 #include "load/open_march.h"
+#include "store/row_output.h"
 #include "watch/field_columns.h"
 #include "watch/field_map.h"
 #include "watch/field_trace.h"
-#include "watch/frames.h"
+#include "frames/frames.h"
 #include "watch/run_end.h"
+#include "watch/run_head.h"
 
 /* Steps after which a signal and the progress are looked at. */
 enum { STEPS_AT_ONCE = 64 };
@@ -32,7 +34,8 @@ typedef struct journey {
   double *vector;      /* [cells*3] room of the frames */
   density_views views; /* of a density, which has coefficients and coordinates in that room */
   field_map map;
-  whole_file out;
+  row_output out;
+  run_head head;
   progress_line progress;
   double unit, t_start;
   long unit_count;          /* units from t = 0 */
@@ -158,7 +161,7 @@ static bool write_solid(journey *j)
   if (status != DVI_OK) return library_error(status) == DONE;
   for (int64_t i = 0; i < numbers; i++) velocity[i] = -velocity[i];
   bool good = elastic_views_make(j->scene, u, velocity, &now) == DONE;
-  j->frames.mesh = now.mesh;
+  frames_move(&j->frames, now.mesh);
   good = good && frames_add(&j->frames, dvi_march_time(j->march), now.count, now.view);
   elastic_views_clear(&now);
   return good;
@@ -187,9 +190,9 @@ static bool write_frame(journey *j)
 
 static bool write_row(journey *j)
 {
-  field_columns_row(&j->columns, j->out.stream);
+  field_columns_row(&j->columns, j->out.row);
   j->row_written = true;
-  return run_file_is_good(&j->out) && write_frame(j);
+  return row_output_add(&j->out) && write_frame(j);
 }
 
 static bool look(journey *j, bool row)
@@ -217,9 +220,13 @@ static long next_stop(const journey *j)
   return next;
 }
 
-static dvi_status save(const journey *j)
+/* Save a checkpoint, and before that the rows that lead to it. */
+static bool save(journey *j)
 {
-  return j->request->checkpoint != NULL ? dvi_march_save(j->march, j->request->checkpoint) : DVI_OK;
+  if (j->request->checkpoint == NULL) return true;
+  if (!row_output_flush(&j->out)) return false;
+  const dvi_status status = dvi_march_save(j->march, j->request->checkpoint);
+  return status == DVI_OK || library_error(status) == DONE;
 }
 
 static bool advance(journey *j, bool *ended)
@@ -229,14 +236,15 @@ static bool advance(journey *j, bool *ended)
   double t = (double)next * j->unit;
   *ended = t >= r->t_end - 1e-9 * j->unit;
   if (*ended) t = r->t_end;
-  dvi_status status = dvi_march_advance(j->march, t);
+  const dvi_status status = dvi_march_advance(j->march, t);
   if (status != DVI_OK) return library_error(status) == DONE;
   j->unit_count = next;
   const bool due = !*ended && next % r->every == 0;
   if (!look(j, due && !r->final)) return false;
-  if (r->checkpoint_every > 0 && !*ended && next % r->checkpoint_every == 0) status = save(j);
+  const bool saves = r->checkpoint_every > 0 && !*ended && next % r->checkpoint_every == 0;
+  const bool good = !saves || save(j);
   progress_show(&j->progress, (t - j->t_start) / (r->t_end - j->t_start), "dvi run");
-  return status == DVI_OK || library_error(status) == DONE;
+  return good;
 }
 
 /* Tell how many steps of different lengths there were, and which. */
@@ -249,18 +257,32 @@ static void tell_events(const journey *j)
              facts.longest);
 }
 
+/* Tell if an uninterrupted run has a row at the start of this one. */
+static bool start_has_row(const journey *j)
+{
+  const bool is_whole = fabs(j->t_start / j->unit - (double)j->unit_count) < 1e-6;
+  return is_whole && j->unit_count % j->request->every == 0;
+}
+
+/* A run that appends its rows to those of another one begins as an uninterrupted run would go
+ * on. */
+static bool first_row_is_due(const journey *j)
+{
+  if (j->request->final || j->out.has_row) return false;
+  return !j->out.is_appended || start_has_row(j);
+}
+
 static int travel(journey *j)
 {
   const run_request *r = j->request;
   bool ended = dvi_march_time(j->march) >= r->t_end, good = true;
-  field_columns_header(&j->columns, j->out.stream);
-  progress_start(&j->progress, r->final || j->out.path != NULL);
-  good = look(j, !r->final);
+  progress_start(&j->progress, r->final || j->out.file.stream != stdout);
+  good = look(j, first_row_is_due(j));
+  j->row_written = j->row_written || j->out.has_row;
   while (good && !ended && *j->caught == 0) good = advance(j, &ended);
   progress_end(&j->progress);
   if (good && !j->row_written) good = field_columns_measure(&j->columns) && write_row(j);
-  const dvi_status saved = save(j);
-  if (saved != DVI_OK) good = library_error(saved) == DONE;
+  good = save(j) && good;
   if (!good) return FAILED;
   tell_events(j);
   warn_of_bound(j);
@@ -286,18 +308,38 @@ static int start_frames(journey *j)
   return FAILED;
 }
 
+/* List the names of the shown columns. */
+static const char *column_name_at(int k, const void *list)
+{
+  const field_columns *columns = list;
+  return k < columns->count ? columns->column[k].name : NULL;
+}
+
+/* Open the rows. Those of a resumed run may go on in the file of the run before it. */
+static bool open_rows(journey *j)
+{
+  const run_request *r = j->request;
+  const hdf5_state state = {.t = j->t_start,
+                            .direction = 1,
+                            .gap = (double)r->every * j->unit * (1 + 1e-9),
+                            .has_row = start_has_row(j)};
+  if (!run_head_make(&j->head, r, j->scene, j->unit, column_name_at, &j->columns)) return false;
+  j->frames.head = &j->head.rows;
+  return row_output_open(&j->out, r->out, &j->head.rows,
+                         r->resume != NULL && !r->final ? &state : NULL);
+}
+
 static int write_files(journey *j)
 {
   const run_request *r = j->request;
   int code = FAILED;
   if (r->plot != NULL && !field_trace_start(&j->trace, &j->columns)) return FAILED;
-  if (file_open(&j->out, r->out)) code = travel(j);
-  if (run_keeps_files(code) && !file_keep(&j->out)) code = FAILED;
+  if (open_rows(j)) code = travel(j);
+  if (!row_output_close(&j->out, run_keeps_files(code))) code = FAILED;
   if (run_keeps_files(code) && !frames_keep(&j->frames)) code = FAILED;
   if (run_keeps_files(code) && r->plot != NULL && !field_trace_plot(&j->trace, r->plot))
     code = FAILED;
   if (run_keeps_files(code) && !field_map_draw(&j->map)) code = FAILED;
-  file_discard(&j->out);
   return code;
 }
 
@@ -315,6 +357,7 @@ int field_run(run_request *request, const problem *scene)
   if (code == DONE) code = write_files(&j);
   field_trace_clear(&j.trace);
   field_columns_clear(&j.columns);
+  run_head_clear(&j.head);
   frames_clear(&j.frames);
   field_map_clear(&j.map);
   density_views_clear(&j.views);

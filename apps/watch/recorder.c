@@ -19,11 +19,13 @@
 #include "load/field.h"
 #include "load/moving.h"
 #include "watch/field_map.h"
-#include "watch/frames.h"
+#include "frames/frames.h"
 #include "watch/run_end.h"
+#include "watch/run_head.h"
 #include "cli/progress.h"
 #include "cli/signals.h"
 #include "plot/trace.h"
+#include "store/row_output.h"
 
 enum { NAME_SIZE = 256 };
 
@@ -31,7 +33,9 @@ enum { NAME_SIZE = 256 };
 typedef struct recorder {
   const run_request *request;
   const problem *scene;
-  whole_file out, events_out;
+  row_output out;
+  whole_file events_out;
+  run_head head;
   run_columns columns;
   event_list events;
   long hits[3]; /* hits, holds and releases of contacts */
@@ -51,6 +55,7 @@ typedef struct recorder {
   /* number counted from t = 0, so that a resumed run writes the rows of an uninterrupted one */
   long step;
   bool chooses; /* the method chooses its steps */
+  long taken;   /* steps of this run */
   bool begun, row_written, stop_silently;
   const volatile sig_atomic_t *caught; /* signal that ends the run after its step, or 0 */
 } recorder;
@@ -72,7 +77,7 @@ static bool recorder_write_nodes(recorder *r, const dvi_integrator *integrator)
   const double t = dvi_integrator_time(integrator);
   moving_views now;
   bool good = moving_views_make(r->scene, t, dvi_integrator_q(integrator), &now) == DONE;
-  r->frames.mesh = now.mesh;
+  frames_move(&r->frames, now.mesh);
   good = good && frames_add(&r->frames, t, now.count, now.view);
   moving_views_clear(&now);
   return good;
@@ -85,7 +90,7 @@ static bool recorder_write_solid(recorder *r, const dvi_integrator *integrator)
   elastic_views now;
   bool good = elastic_views_of_state(r->scene, t, dvi_integrator_q(integrator),
                                      dvi_integrator_p(integrator), &now) == DONE;
-  r->frames.mesh = now.mesh;
+  frames_move(&r->frames, now.mesh);
   good = good && frames_add(&r->frames, t, now.count, now.view);
   elastic_views_clear(&now);
   return good;
@@ -110,9 +115,9 @@ static bool recorder_write_frame(recorder *r, const dvi_integrator *integrator)
 
 static bool recorder_write_row(recorder *r, dvi_integrator *integrator)
 {
-  columns_row(&r->columns, integrator, r->out.stream);
+  columns_row(&r->columns, integrator, r->out.row);
   r->row_written = true;
-  return run_file_is_good(&r->out) && recorder_write_frame(r, integrator);
+  return row_output_add(&r->out) && recorder_write_frame(r, integrator);
 }
 
 /* Write an event that was found. */
@@ -156,9 +161,19 @@ static void tell_hits(const recorder *r)
     complain("run: contacts: %ld hit%s", n[0], n[0] == 1 ? "" : "s");
 }
 
+/* A run that appends its rows to those of another one begins as an uninterrupted run would go
+ * on. */
 static bool row_is_due(const recorder *r)
 {
-  return !r->request->final && (!r->begun || r->step % r->request->every == 0);
+  if (r->request->final || (!r->begun && r->out.has_row)) return false;
+  return (!r->begun && !r->out.is_appended) || r->step % r->request->every == 0;
+}
+
+/* A checkpoint is saved after this step, and the rows up to it must not be lost. */
+static bool flush_is_due(const recorder *r)
+{
+  const long every = r->request->checkpoint_every;
+  return every > 0 && r->taken > 0 && r->taken % every == 0;
 }
 
 /* Note the lengths that the method chose, without the step that ends the run on time. */
@@ -189,12 +204,14 @@ static int recorder_observe(dvi_integrator *integrator, void *user)
   if (r->begun) growth_watch_step(&r->growth);
   if (r->begun && !recorder_write_hits(r, integrator)) r->stop_silently = true;
   if (r->chooses && r->begun) note_step(r, integrator);
-  r->row_written = false;
+  r->taken += r->begun;
+  r->row_written = !r->begun && r->out.has_row;
   const bool row = row_is_due(r);
   r->begun = true;
   bool good = !r->stop_silently;
   if (good && (row || r->trace.t != NULL)) good = columns_measure(&r->columns, integrator);
   if (good && row) good = recorder_write_row(r, integrator);
+  if (good && flush_is_due(r)) good = row_output_flush(&r->out);
   if (good) good = alarms_look(&r->alarms, integrator);
   if (good && r->trace.t != NULL) trace_add(&r->trace, integrator);
   if (good)
@@ -258,11 +275,8 @@ static int recorder_advance(recorder *r, dvi_integrator *integrator)
                                    .checkpoint = request->checkpoint,
                                    .checkpoint_every = request->checkpoint_every,
                                    .cancel = r->caught};
-  r->t_start = dvi_integrator_time(integrator);
-  r->step = step_number(integrator, r->t_start, request->h);
-  columns_header(&r->columns, r->out.stream);
   if (r->events_out.stream != NULL) events_header(r->scene, r->events_out.stream);
-  progress_start(&r->progress, request->final || r->out.path != NULL);
+  progress_start(&r->progress, request->final || r->out.file.stream != stdout);
   dvi_run_report report;
   const dvi_status status = dvi_run(integrator, &options, &report);
   progress_end(&r->progress);
@@ -281,6 +295,32 @@ static int recorder_advance(recorder *r, dvi_integrator *integrator)
   return complete ? ended : FAILED;
 }
 
+/* List the names of the shown columns. */
+static const char *column_name_at(int k, const void *list)
+{
+  const run_columns *columns = list;
+  return k < columns->count ? columns->column[k].name : NULL;
+}
+
+/* Open the rows. Those of a resumed run may go on in the file of the run before it. */
+static bool open_rows(recorder *r, const dvi_integrator *integrator)
+{
+  const run_request *request = r->request;
+  r->t_start = dvi_integrator_time(integrator);
+  r->step = step_number(integrator, r->t_start, request->h);
+  if (!run_head_make(&r->head, request, r->scene, request->h, column_name_at, &r->columns))
+    return false;
+  const bool is_counted = !r->chooses && dvi_integrator_monitor(integrator) == NULL;
+  const hdf5_state state = {
+      .t = r->t_start,
+      .direction = request->t_end < r->t_start ? -1 : 1,
+      .gap = is_counted ? (double)request->every * fabs(request->h) * (1 + 1e-9) : HUGE_VAL,
+      .has_row = r->step % request->every == 0};
+  r->frames.head = &r->head.rows;
+  return row_output_open(&r->out, request->out, &r->head.rows,
+                         request->resume != NULL && !request->final ? &state : NULL);
+}
+
 static int write_files(recorder *r, dvi_integrator *integrator)
 {
   const run_request *request = r->request;
@@ -290,16 +330,15 @@ static int write_files(recorder *r, dvi_integrator *integrator)
     trace_clear(&r->trace);
     return FAILED;
   }
-  if (file_open(&r->out, request->out) &&
+  if (open_rows(r, integrator) &&
       (request->events == NULL || file_open(&r->events_out, request->events)))
     code = recorder_advance(r, integrator);
-  if (run_keeps_files(code) && !file_keep(&r->out)) code = FAILED;
+  if (!row_output_close(&r->out, run_keeps_files(code))) code = FAILED;
   if (run_keeps_files(code) && request->events != NULL && !file_keep(&r->events_out)) code = FAILED;
   if (run_keeps_files(code) && !frames_keep(&r->frames)) code = FAILED;
   if (run_keeps_files(code) && request->plot != NULL && !trace_plot(&r->trace, request->plot))
     code = FAILED;
   if (run_keeps_files(code) && !field_map_draw(&r->map)) code = FAILED;
-  file_discard(&r->out);
   file_discard(&r->events_out);
   trace_clear(&r->trace);
   return code;
@@ -340,6 +379,7 @@ int record(const run_request *request, const problem *scene, dvi_integrator *int
   events_clear(&r.events);
   energy_watch_clear(&r.watch);
   columns_clear(&r.columns);
+  run_head_clear(&r.head);
   frames_clear(&r.frames);
   density_views_clear(&r.views);
   field_map_clear(&r.map);

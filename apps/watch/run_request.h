@@ -18,5 +18,6 @@ typedef struct run_request {
   long digits;     /**< number of digits that --verify must find, 0 if not given */
   const char *csv; /**< file of --verify */
   words settings, alarms;
+  char *command; /**< the command line */
 } run_request;
 #endif

@@ -13,6 +13,8 @@ from dvi._library import version
 from dvi.ensemble import Ensemble
 from dvi.errors import (BadArgument, CallbackFailed, Error, NotConverged, NotFinite, StepTooLarge,
                         Unsupported)
+from dvi.field import Field, March, Mesh
+from dvi.file import Rows, read
 from dvi.integrator import Integrator
 from dvi.recording import Event, Run
 from dvi.scene import Scene
@@ -20,6 +22,6 @@ from dvi.study import order, work
 from dvi.system import System
 
 __version__ = version()
-__all__ = ["BadArgument", "CallbackFailed", "Ensemble", "Error", "Event", "Integrator",
-           "NotConverged", "NotFinite", "Run", "Scene", "StepTooLarge", "System", "Unsupported",
-           "order", "work"]
+__all__ = ["BadArgument", "CallbackFailed", "Ensemble", "Error", "Event", "Field", "Integrator",
+           "March", "Mesh", "NotConverged", "NotFinite", "Rows", "Run", "Scene", "StepTooLarge",
+           "System", "Unsupported", "order", "read", "work"]

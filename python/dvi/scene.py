@@ -6,9 +6,14 @@ import numpy as np
 from dvi._dvi import ffi, lib
 from dvi._library import Owned, text
 from dvi.errors import error
+from dvi.field import Field, March, Mesh, field_of, mesh_of
 from dvi.integrator import Integrator
 from dvi.recording import record
 from dvi.system import System
+
+
+# What a scene has once its system is made.
+ADOPTED = ("pointer", "nq", "nv", "coordinates", "velocities", "momenta", "invariants")
 
 
 class Scene(System):
@@ -42,13 +47,30 @@ class Scene(System):
             raise error(status, text(message))
         self.scene, self.owned = scene[0], Owned("scene", scene[0])
         self._plan = lib.dvi_scene_plan_of(self.scene)
+        self._adopted = False
+
+    def __getattr__(self, name):
+        """Make the system when it is first asked for: a grid for yee has none."""
+        if name in ADOPTED and not self.__dict__.get("_adopted", True):
+            self._adopted = True
+            self._adopt_system()
+            return getattr(self, name)
+        raise AttributeError(f"a scene has no {name!r}")
+
+    def _adopt_system(self):
         pointer = lib.dvi_scene_system(self.scene)
         if pointer == ffi.NULL:
+            self._adopted = False
             raise error(lib.DVI_UNSUPPORTED)
         nq, nv = lib.dvi_system_nq(pointer), lib.dvi_system_nv(pointer)
         self._adopt(pointer, [text(lib.dvi_scene_coordinate(self.scene, i)) for i in range(nq)],
                     [text(lib.dvi_scene_velocity(self.scene, i)) for i in range(nv)],
                     [text(lib.dvi_scene_momentum(self.scene, i)) for i in range(nv)])
+
+    @property
+    def source(self):
+        """Return the text of the scene."""
+        return self._made_of[1]
 
     def start(self):
         """Return q and p of the scene's start."""
@@ -65,6 +87,20 @@ class Scene(System):
                 found[text(parameter.name)] = parameter.value
             i += 1
         return found
+
+    @property
+    def mesh(self) -> Mesh:
+        """Return the mesh of a scene with a field."""
+        return mesh_of(self)
+
+    @property
+    def field(self) -> Field:
+        """Return the field of a scene with a mesh. Its unknowns are the coordinates."""
+        return field_of(self)
+
+    def march(self, method=None, h=0.0, fraction=0.0, threads=1) -> March:
+        """Return a march of the scene's field at its start, by leapfrog, yee, avi or tents."""
+        return March(self, method, h, fraction, threads)
 
     def _events(self):
         i = 0
@@ -89,7 +125,7 @@ class Scene(System):
         return _parsed, (source, name, parameters)
 
     def __repr__(self):
-        return f"<Scene {pathlib.Path(self._made_of[0]).stem}: {', '.join(self.coordinates)}>"
+        return f"<Scene {pathlib.Path(self._made_of[0]).stem}>"
 
 
 def _parsed(source, name, parameters):

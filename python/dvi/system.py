@@ -13,6 +13,9 @@ class System:
 
     potential, gradient   V(t, q) -> float, V_q(t, q) -> array. A gradient that is left out is
                           differenced
+    hessian, pattern      V_qq(t, q) -> array [n, n], or the entries of a sparse pattern of scipy
+                          by columns. Left out, it is differenced
+    forces                F(t, q, v) -> array, outside of the Lagrangian
     mass                  a number, a vector of diagonal entries, or a symmetric matrix (also of
                           scipy.sparse). Default: 1
     lagrangian            L(t, q, v) -> float in place of all of these
@@ -23,7 +26,7 @@ class System:
     """
 
     def __init__(self, n=None, potential=None, gradient=None, mass=1.0, lagrangian=None,
-                 names=None, autonomous=False):
+                 names=None, autonomous=False, hessian=None, pattern=None, forces=None):
         if (potential is None) == (lagrangian is None):
             raise TypeError("a system needs either a potential or a lagrangian")
         n = len(names) if n is None and names is not None else n
@@ -34,10 +37,14 @@ class System:
         terms = self._new("dvi_system_terms *")
         terms.dimension, terms.autonomous = n, autonomous
         if potential is not None:
-            terms.potentials, terms.potential_count = self._potential(n, potential, gradient), 1
+            V = self._potential(n, potential, gradient)
+            self._set_hessian(V, n, hessian, pattern)
+            terms.potentials, terms.potential_count = V, 1
             self._set_mass(terms.mass, n, mass)
         else:
             terms.lagrangian = self._lagrangian(n, lagrangian)
+        if forces is not None:
+            terms.forces, terms.force_count = self._forces(n, forces), 1
         made = ffi.new("dvi_system **")
         check(lib.dvi_system_create(terms, made))
         self.owned = Owned("system", made[0])
@@ -101,6 +108,36 @@ class System:
             V.gradient = self._callback(kind, gradient, put_gradient)
         return V
 
+    def _set_hessian(self, V, n, hessian, pattern):
+        """Set the Hessian and its pattern, of all entries if none is given."""
+        if pattern is not None or hessian is not None:
+            self._set_pattern(V.qq, np.ones((n, n)) if pattern is None else pattern)
+        if hessian is None:
+            return
+        entries = V.qq.start[n]
+
+        def put_hessian(t, q, V_qq, _):
+            made = np.asarray(hessian(t, _view(q, n)), dtype=float)
+            _view(V_qq, entries)[:] = made.T.ravel() if made.ndim == 2 else made
+        V.hessian = self._callback("int(*)(double, double *, double *, void *)", hessian,
+                                   put_hessian)
+
+    def _set_pattern(self, to, given):
+        from scipy import sparse
+        matrix = sparse.csc_matrix(given)
+        matrix.sort_indices()
+        to.start = self._new("int[]", matrix.indptr.tolist())
+        to.row = self._new("int[]", matrix.indices.tolist())
+        return matrix
+
+    def _forces(self, n, value):
+        def put_value(t, q, v, F, _):
+            _view(F, n)[:] = value(t, _view(q, n), _view(v, n))
+        force = self._new("dvi_force *")
+        force.value = self._callback("int(*)(double, double *, double *, double *, void *)", value,
+                                     put_value)
+        return force
+
     def _lagrangian(self, n, value):
         def put_value(t, q, v, L, _):
             L[0] = value(t, _view(q, n), _view(v, n))
@@ -118,11 +155,7 @@ class System:
             mass.diagonal = self._numbers(vector(given, n, "mass"))
 
     def _set_sparse_mass(self, mass, given):
-        from scipy import sparse
-        matrix = sparse.csc_matrix(given)
-        matrix.sort_indices()
-        mass.pattern.start = self._new("int[]", matrix.indptr.tolist())
-        mass.pattern.row = self._new("int[]", matrix.indices.tolist())
+        matrix = self._set_pattern(mass.pattern, given)
         mass.values = self._numbers(np.array(matrix.data, dtype=float))
 
     def _numbers(self, array):

@@ -1,6 +1,8 @@
 """The package gives the library's numbers, and its sentences."""
+import os
 import pathlib
 import pickle
+import subprocess
 
 import numpy as np
 import pytest
@@ -88,6 +90,33 @@ def test_masses():
         assert np.allclose(run.q, runs[0].q, atol=1e-13)
 
 
+def test_hessians_of_python_have_patterns():
+    sparse = pytest.importorskip("scipy.sparse")
+    K = sparse.diags([[-1.0] * 3, [2.0] * 4, [-1.0] * 3], [-1, 0, 1], format="csc") * 100
+    calls = []
+
+    def hessian(t, q):
+        calls.append(t)
+        return K.data
+    spring = dict(potential=lambda t, q: q @ (K @ q) / 2, gradient=lambda t, q: K @ q)
+    start = dict(h=0.5, t_end=5, q=[1, 0, 0, 0], v=[0] * 4)
+    method = "galerkin:degree=2,solver=newton"
+    given = dvi.System(4, hessian=hessian, pattern=K, **spring).run(method, **start)
+    dense = dvi.System(4, hessian=lambda t, q: K.toarray(), **spring).run(method, **start)
+    assert calls
+    assert np.allclose(given.q, dense.q, atol=1e-12)
+    assert np.allclose(given.q, dvi.System(4, **spring).run(method, **start).q, atol=1e-8)
+
+
+def test_forces_of_python_take_energy():
+    system = dvi.System(1, potential=lambda t, q: q @ q / 2, gradient=lambda t, q: q,
+                        forces=lambda t, q, v: -0.2 * v)
+    run = system.run(METHOD, h=0.1, t_end=5, q=[1], v=[0])
+    omega = np.sqrt(1 - 0.01)
+    exact = np.exp(-0.1 * run.t) * (np.cos(omega * run.t) + 0.1 / omega * np.sin(omega * run.t))
+    assert np.allclose(run["q1"], exact, atol=1e-6)
+
+
 def test_addresses_of_c_callbacks():
     import ctypes
     kind = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_double, ctypes.POINTER(ctypes.c_double),
@@ -138,6 +167,54 @@ def test_events(tmp_path):
     assert all(abs(event.q[1]) < 1e-10 for event in run.events)
 
 
+STRING = """
+parameters: {N: 50}
+mesh: {generator: interval, cells: N, size: 1}
+field: wave
+boundary: fixed
+initial: {u: sin(pi*x)}
+probes: {middle: {at: 0.5}}
+method: verlet
+step: {fraction: 0.5}
+until: 1
+"""
+
+
+def test_fields_are_arrays():
+    scene = dvi.Scene.parse(STRING)
+    mesh, field = scene.mesh, scene.field
+    assert mesh.points.shape == (51, 1) and mesh.cells().shape == (50, 2)
+    run = scene.run()
+    u = field.lift(run.q)
+    assert u.shape == (len(run), 51) and np.all(u[:, 0] == 0)
+    assert np.array_equal(u[:, field.unknowns], run.q)
+    assert run["middle"][-1] == pytest.approx(-1, abs=1e-3)
+    omega, modes = field.modes(3)
+    assert np.allclose(omega, np.pi * np.arange(1, 4), rtol=2e-3) and modes.shape == (3, 51)
+    pytest.importorskip("scipy")
+    mass, stiffness = field.matrix("mass"), field.matrix("stiffness")
+    residual = stiffness @ modes[0, field.unknowns] - omega[0]**2 * (mass @ modes[0, field.unknowns])
+    assert np.max(np.abs(residual)) < 1e-10
+    with pytest.raises(dvi.Unsupported, match="has no mesh"):
+        dvi.Scene(SCENES / "kepler.yaml").mesh
+
+
+def test_marches_have_the_forms_of_maxwell():
+    scene = dvi.Scene.parse("""
+mesh: {generator: box, cells: [8, 8], size: [1, 1]}
+field: maxwell
+boundary: pec
+initial: {E: [0, "sin(pi*x)"]}
+step: {fraction: 0.5}
+until: 1
+""")
+    march = scene.march("yee")
+    first = march.observables["energy"]
+    assert march.advance(0.5).t == 0.5
+    assert march.observables["energy"] == pytest.approx(first, rel=0.02)
+    assert march.vectors("E").shape == (64, 3)
+
+
 def test_errors_have_the_librarys_sentences(kepler):
     with pytest.raises(dvi.BadArgument, match="unknown method .galerkn.; there are galerkin, verlet"):
         kepler.run("galerkn", h=0.05, t_end=1)
@@ -155,3 +232,25 @@ def test_errors_have_the_librarys_sentences(kepler):
 def test_measured_orders(kepler):
     table = dvi.order(kepler, "galerkin:degree=2", h=0.1, t_end=2, levels=4)
     assert np.allclose(table["order"][1:], 4, atol=0.1)
+
+
+def test_files_of_the_command(kepler, tmp_path):
+    pytest.importorskip("h5py")
+    path, command = tmp_path / "run.h5", os.environ["DVI_COMMAND"]
+    made = subprocess.run([command, "run", SCENES / "kepler.yaml", "--set", "e=0.3", "--method",
+                           METHOD, "--h", "0.0625", "--t-end", "1", "--out", path],
+                          stderr=subprocess.PIPE, text=True)
+    if "no module" in made.stderr:
+        pytest.skip(made.stderr)
+    rows = dvi.read(path)
+    run = kepler.run(METHOD, h=0.0625, t_end=1)
+    assert list(rows)[:3] == ["t", "x", "y"] and rows.array.shape == (17, len(rows))
+    assert all(np.array_equal(rows[name], run[name]) for name in ("t", "x", "p_y", "energy"))
+    assert rows.attributes["method"] == METHOD and "lagrangian" in rows.attributes["scene"]
+    with pytest.raises(KeyError, match="there is no column 'z'; there are t, x, y"):
+        rows["z"]
+    table = tmp_path / "table.h5"
+    subprocess.run([command, "sweep", "kepler", "--method", METHOD, "--set", "e=0,0.5", "--h", "0.1",
+                    "--t-end", "1", "--out", table], check=True)
+    assert list(dvi.read(table)["status"]) == ["DVI_OK", "DVI_OK"]
+    assert list(dvi.read(table)["e"]) == [0, 0.5]

@@ -59,8 +59,14 @@ quietly "$dvi" run kepler --h 0.1 --t-end 1 --method galerkin:solver=kinsol ||
   fail "SUNDIALS does not work"
 quietly "$dvi" order kepler --method verlet --levels 4 || fail "dvi order does not work"
 
+if [ -n "$(find "$prefix"/lib* -name dvi_hdf5.so)" ]; then
+  quietly "$dvi" run kepler --method verlet --h 0.1 --t-end 1 --out "$work/rows.h5" ||
+    fail "the command writes no HDF5"
+fi
+
 say "scenes, manual pages and completions"
-quietly "$dvi" check "$prefix/share/dvi/scenes/kepler.yaml" || fail "an installed scene does not run"
+quietly "$dvi" check "$prefix/share/dvi/scenes/kepler.yaml" ||
+  fail "an installed scene does not run"
 for page in dvi dvi-run; do
   [ -s "$prefix/share/man/man1/$page.1" ] || [ -s "$prefix/share/man/man1/$page.1.gz" ] ||
     fail "no manual page $page(1)"

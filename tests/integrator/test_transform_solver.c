@@ -188,6 +188,67 @@ START_TEST(steps_have_the_same_bits_at_every_level)
 }
 END_TEST
 
+/* ---- many coordinates ---- */
+
+/* The Hessians of a chain in steps by arclength, which takes one with each value or gradient of g,
+ * and n times as many with a Hessian of g. */
+static void check_hessians(const char *method, int nodes, dvi_counters *counters)
+{
+  enum { STEPS = 5 };
+  problem *chain = create_problem("chain", "n=60");
+  dvi_integrator *integrator = start_paced_integrator(chain, create_transformed, "arclength",
+                                                      method),
+                 *newton = start_paced_integrator(
+                     chain, create_transformed, "arclength",
+                     method_spec("%.17s,nodes=%d,solver=newton", method, nodes));
+  advance(integrator, 0.02, STEPS);
+  advance(newton, 0.02, STEPS);
+  dvi_integrator_counters(integrator, counters);
+  ck_assert_int_le(counters->hessians, nodes * counters->residuals + 2 * STEPS);
+  check_near(chain->nq, dvi_integrator_q(integrator), dvi_integrator_q(newton), chain->q, 256);
+  dvi_integrator_destroy(&integrator);
+  dvi_integrator_destroy(&newton);
+  problem_destroy(&chain);
+}
+
+START_TEST(the_mass_at_a_point_takes_no_hessian)
+{
+  dvi_counters counters;
+  check_hessians("galerkin:degree=2,nodes=3,solver=fixed-point", 3, &counters);
+  ck_assert_int_gt(counters.factorizations, 0);
+}
+END_TEST
+
+/* The systems of simplified Newton's method are those of the chain, and two unknowns more. */
+START_TEST(systems_of_a_sparse_lagrangian_take_no_hessian)
+{
+  dvi_counters counters;
+  check_hessians("galerkin:degree=2,solver=simplified", 2, &counters);
+  ck_assert_int_gt(counters.jacobians, 0);
+}
+END_TEST
+
+/* They precondition the Jacobian's products where there are 200 unknowns or more. */
+START_TEST(newtons_method_takes_products)
+{
+  static const char monitor[] = "acceleration:power=0.1", method[] = "galerkin:degree=2";
+  problem *chain = create_problem("chain", "n=100");
+  dvi_integrator *own = start_paced_integrator(chain, create_transformed, monitor, method),
+                 *newton = start_paced_integrator(chain, create_transformed, monitor,
+                                                  method_spec("%s,solver=newton", method));
+  dvi_counters counters;
+  advance(own, 0.05, 3);
+  advance(newton, 0.05, 3);
+  dvi_integrator_counters(newton, &counters);
+  ck_assert_int_gt(counters.products, 0);
+  ck_assert_int_le(counters.products, 12 * counters.newtons);
+  check_near(chain->nq, dvi_integrator_q(own), dvi_integrator_q(newton), chain->q, 256);
+  dvi_integrator_destroy(&own);
+  dvi_integrator_destroy(&newton);
+  problem_destroy(&chain);
+}
+END_TEST
+
 SUITE(transform_solver)
 {
   tcase_add_loop_test(tests, steps_that_contract_need_no_jacobian, 0, WAYS);
@@ -196,4 +257,7 @@ SUITE(transform_solver)
   tcase_add_test(tests, a_guess_that_leads_astray_is_replaced);
   tcase_add_test(tests, certified_steps_pass);
   tcase_add_loop_test(tests, steps_have_the_same_bits_at_every_level, 0, WAYS);
+  tcase_add_test(tests, the_mass_at_a_point_takes_no_hessian);
+  tcase_add_test(tests, systems_of_a_sparse_lagrangian_take_no_hessian);
+  tcase_add_test(tests, newtons_method_takes_products);
 }

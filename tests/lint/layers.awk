@@ -39,7 +39,7 @@ BEGIN {
   sees["method/split"] = sees["method"] " method method/element space step/split"
   sees["march"] = "core"
   sees["integrator"] = "core march num space solve system method"
-  sees["record"] = "core num method integrator"
+  sees["record"] = "core num system method integrator"
   sees["boundary"] = "core num solve system step/element method/element"
   sees["sensitivity"] = "core num system step/element method/element"
   sees["diagnostics"] = "core num system"
@@ -94,8 +94,12 @@ BEGIN {
   uses["picture"] = "cli plot"
   uses["study"] = "cli csv plot"
   uses["mechanics"] = uses["study"] " study load"
-  uses["watch"] = uses["bench"] = uses["mechanics"] " mechanics"
-  uses["cmd"] = uses["watch"] " watch bench sweep boundary varied picture"
+  uses["hdf5"] = ""
+  uses["store"] = "cli csv load hdf5"
+  uses["bench"] = uses["mechanics"] " mechanics"
+  uses["frames"] = "cli plot picture hdf5 store"
+  uses["watch"] = uses["bench"] " picture hdf5 store frames"
+  uses["cmd"] = uses["watch"] " watch bench sweep boundary varied"
   uses["main.c"] = "cli"
   # Single headers of other rooms that a room may include.
   also["reference solve/sundials.h"] = 1

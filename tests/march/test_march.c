@@ -114,9 +114,9 @@ static dvi_status save(const void *user, const char *path)
   return DVI_OK;
 }
 
-static const dvi__marcher marcher = {time_of, time_left, ticks_of, advance,        take_back,
-                                     reject,  event,     value,    value_at_start, occurred,
-                                     observe, save,      NULL};
+static const dvi__marcher marcher = {
+    time_of, time_left,      ticks_of, advance, take_back, reject, event,
+    value,   value_at_start, occurred, observe, save,      NULL,   0};
 
 START_TEST(clocks_that_tick_when_they_are_due_run_to_the_end)
 {

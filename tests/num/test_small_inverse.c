@@ -4,7 +4,7 @@
 #include "num/simd/small_inverse.h"
 #include "support/suite.h"
 
-enum { MOST = DVI__SMALL_INVERSE_MOST };
+enum { MOST = DVI__SMALL_INVERSE_MOST, MOST_NEAR_ONE = DVI__NEAR_ONE_MOST };
 
 /* Fill A [stride*n] with numbers below `size`, and add `diagonal`. */
 static void fill_matrix(int n, int stride, double size, double diagonal, double *A)
@@ -33,7 +33,7 @@ static double defect_of_product(int n, const double *A, const double *B, int str
 START_TEST(a_matrix_times_its_inverse_is_one)
 {
   const int n = _i;
-  double A[MOST * MOST], inverse[MOST * MOST];
+  static double A[MOST * MOST], inverse[MOST * MOST];
   fill_matrix(n, n, 1, 0, A);
   fill_matrix(n, n, 1, 0, inverse);
   ck_assert_int_ne(dvi__small_invert(n, inverse), 0);
@@ -44,8 +44,8 @@ END_TEST
 START_TEST(near_one_there_is_no_exchange)
 {
   const int n = _i, stride = dvi__near_one_stride(n);
-  static double A[MOST * MOST], inverse[MOST * MOST];
-  double x[MOST], worst = 0;
+  static double A[MOST_NEAR_ONE * MOST_NEAR_ONE], inverse[MOST_NEAR_ONE * MOST_NEAR_ONE];
+  double x[MOST_NEAR_ONE], worst = 0;
   fill_matrix(n, stride, 0.2 / n, 1, A);
   fill_matrix(n, stride, 0.2 / n, 1, inverse);
   ck_assert_int_eq(dvi__near_one_invert(n, inverse), 1);
@@ -60,12 +60,15 @@ END_TEST
 START_TEST(the_sign_is_that_of_the_determinant)
 {
   double turn[] = {0, 1, -1, 0}, swap[] = {0, 1, 1, 0}, negative[] = {-2, 0, 0, 3},
-         singular[] = {1, 2, 2, 4}, not_a_number[] = {NAN, 1, 1, 1};
+         singular[] = {1, 2, 2, 4}, not_a_number[] = {NAN, 1, 1, 1}, tiny[] = {1, 0, 0, 1e-310},
+         huge[] = {1, 1, HUGE_VAL, 1};
   ck_assert_int_eq(dvi__small_invert(2, turn), 1);
   ck_assert_int_eq(dvi__small_invert(2, swap), -1);
   ck_assert_int_eq(dvi__small_invert(2, negative), -1);
   ck_assert_int_eq(dvi__small_invert(2, singular), 0);
   ck_assert_int_eq(dvi__small_invert(2, not_a_number), 0);
+  ck_assert_int_eq(dvi__small_invert(2, tiny), 0);
+  ck_assert_int_eq(dvi__small_invert(2, huge), 0);
   ck_assert_double_eq(turn[1], -1);
   ck_assert_double_eq(negative[0], -0.5);
 }
@@ -84,7 +87,7 @@ END_TEST
 SUITE(small_inverse)
 {
   tcase_add_loop_test(tests, a_matrix_times_its_inverse_is_one, 1, MOST + 1);
-  tcase_add_loop_test(tests, near_one_there_is_no_exchange, 1, MOST + 1);
+  tcase_add_loop_test(tests, near_one_there_is_no_exchange, 1, MOST_NEAR_ONE + 1);
   tcase_add_test(tests, the_sign_is_that_of_the_determinant);
   tcase_add_test(tests, matrices_far_from_one_are_refused);
 }

@@ -153,8 +153,8 @@ int64_t dvi_recording_rows(const dvi_recording *recording);
  *  @return NULL if the part was not recorded, and for NULL */
 const double *dvi_recording_part(const dvi_recording *recording, dvi_record_part part, int *width);
 
-/** Evaluate DVI_RECORD_V, DVI_RECORD_INVARIANTS, or both, of all rows, from recorded coordinates and
- *  momenta. What was recorded stays. The system must still exist.
+/** Evaluate DVI_RECORD_V, DVI_RECORD_INVARIANTS, or both, of all rows, from recorded coordinates
+ *  and momenta. What was recorded stays. The system must still exist.
  *  @retval DVI_BAD_ARGUMENT  another part, or coordinates or momenta were not recorded
  *  @retval DVI_NO_MEMORY     memory could not be allocated
  *  @retval (others)          as dvi_system_velocity and dvi_system_invariants. Nothing was added */

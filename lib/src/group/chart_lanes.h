@@ -61,8 +61,8 @@ INLINE void lanes_dexp(const dvi__lane *c, double sign, const dvi__lane *xi, con
   for (int i = 0; i < 3; i++) sum[i] = v[i] + (sign * c[2] * once[i] + c[3] * twice[i]);
 }
 
-/* Compute R^T v with the same R at all nodes. */
-INLINE void lanes_turn_back(const double *R, const dvi__lane *v, dvi__lane *turned)
+/* Compute R^T v. */
+INLINE void lanes_turn_back(const dvi__lane *R, const dvi__lane *v, dvi__lane *turned)
 {
   for (int i = 0; i < 3; i++) turned[i] = R[i] * v[0] + R[3 + i] * v[1] + R[6 + i] * v[2];
 }

@@ -157,6 +157,27 @@ WIDE static void six_near(const double *s, double *functions)
   store_rows(6, c, DVI__LANES, DVI__LANES, functions);
 }
 
+WIDE static void four_near(const double *s, double *functions)
+{
+  lane x, c[4];
+  load_rows(1, s, 0, DVI__LANES, &x);
+  sum_series_of(3, 6, &x, &c[3]);
+  sum_series_of(2, 6, &x, &c[2]);
+  for (int k = 1; k >= 0; k--) c[k] = inverse_factorial[k] - x * c[k + 2];
+  store_rows(4, c, DVI__LANES, DVI__LANES, functions);
+}
+
+void dvi__stumpff_four_of(const double s[DVI__STUMPFF_LANES], double c[4][DVI__STUMPFF_LANES])
+{
+  four_near(s, c[0]);
+  for (int k = 0; k < DVI__STUMPFF_LANES; k++)
+    if (!(s[k] <= NEAR)) {
+      double one[4];
+      dvi__stumpff_four(s[k], one);
+      for (int i = 0; i < 4; i++) c[i][k] = one[i];
+    }
+}
+
 void dvi__stumpff_six_of(const double s[DVI__STUMPFF_LANES], double c[6][DVI__STUMPFF_LANES])
 {
   six_near(s, c[0]);

@@ -21,8 +21,9 @@ void dvi__stumpff_four(double s, double c[4]);
  * recurrence. */
 void dvi__stumpff_six(double s, double c[6]);
 
-/* Compute the first six of several arguments side by side, with the same digits. */
+/* Compute the first four, or six, of several arguments side by side, with the same digits. */
 enum { DVI__STUMPFF_LANES = 4 };
+void dvi__stumpff_four_of(const double s[DVI__STUMPFF_LANES], double c[4][DVI__STUMPFF_LANES]);
 void dvi__stumpff_six_of(const double s[DVI__STUMPFF_LANES], double c[6][DVI__STUMPFF_LANES]);
 
 #endif

@@ -177,7 +177,11 @@ static dvi_status worker_allocate(const dvi_ensemble *e, dvi__worker *w)
   m->residuals = DVI_NEW(long, capacity);
   m->gradients = DVI_NEW(long, capacity);
   m->fixed = DVI_NEW(long, capacity);
-  if (w->numbers && w->ahead && w->absence && m->left && m->residuals && m->gradients && m->fixed)
+  m->simplified = DVI_NEW(long, capacity);
+  m->jacobians = DVI_NEW(long, capacity);
+  m->hessians = DVI_NEW(long, capacity);
+  if (w->numbers && w->ahead && w->absence && m->left && m->residuals && m->gradients && m->fixed &&
+      m->simplified && m->jacobians && m->hessians)
     return DVI_OK;
   return dvi__fail(DVI_NO_MEMORY, "ensemble: no memory for %d members side by side", e->capacity);
 }
@@ -192,6 +196,9 @@ static void clear_worker(dvi__worker *w)
   dvi__release(w->members.residuals);
   dvi__release(w->members.gradients);
   dvi__release(w->members.fixed);
+  dvi__release(w->members.simplified);
+  dvi__release(w->members.jacobians);
+  dvi__release(w->members.hessians);
   dvi__release(w->point[0]);
   dvi__release(w->point[1]);
 }

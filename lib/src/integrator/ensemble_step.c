@@ -94,6 +94,9 @@ static void accept_lanes(const dvi_ensemble *e, dvi__worker *w, const dvi__block
     counters->residuals += m->residuals[k];
     counters->gradients += m->gradients[k];
     counters->fixed_points += m->fixed[k];
+    counters->simplified += m->simplified[k];
+    counters->jacobians += m->jacobians[k];
+    counters->hessians += m->hessians[k];
     if (e->system_is_general) accept_general(e, w, block, k);
   }
 }
@@ -123,9 +126,10 @@ static void step_block_lanes(const dvi_ensemble *e, dvi__worker *w, const dvi__b
   dvi__members *m = &w->members;
   const size_t count = (size_t)block->count;
   memcpy(w->numbers, block->numbers, e->state_numbers * count * sizeof(double));
-  memset(m->residuals, 0, count * sizeof(long));
-  memset(m->gradients, 0, count * sizeof(long));
-  memset(m->fixed, 0, count * sizeof(long));
+  long *const counts[] = {m->residuals,  m->gradients, m->fixed,
+                          m->simplified, m->jacobians, m->hessians};
+  for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
+    memset(counts[i], 0, count * sizeof(long));
   dvi__take_step_lanes(&w->integrator->stepper, m, e->task.h);
   leave_not_finite(e, m);
   accept_lanes(e, w, block);

@@ -53,6 +53,7 @@ typedef struct dvi__members {
   char *left;
   /* [count] evaluations in the step, as in dvi_counters */
   long *residuals, *gradients, *fixed;
+  long *simplified, *jacobians, *hessians;
 } dvi__members;
 
 /* A key of a method's specification. The value is a whole number, one of a list of names, or a

@@ -72,3 +72,73 @@ void dvi__predictor_leave(dvi__predictor *p)
 {
   p->h = 0;
 }
+
+/* ---- members abreast ---- */
+
+static int count_of_lane(const dvi__abreast *memory, double h, int place, int lane)
+{
+  const double numbers[] = {
+      [LENGTH] = memory[LENGTH][lane], [KNOWN] = memory[KNOWN][lane], [USED] = memory[USED][lane]};
+  return count_of(numbers, h, place);
+}
+
+WIDE static void correct_guesses(size_t unknowns, const dvi__abreast *difference,
+                                 const dvi__abreast_mask is_used[DIFFERENCES], dvi__abreast *x)
+{
+  for (size_t k = 0; k < DIFFERENCES; k++)
+    for (size_t i = 0; i < unknowns; i++) {
+      const dvi__abreast sum = x[i] + difference[k * unknowns + i];
+      abreast_replace(&is_used[k], &sum, &x[i]);
+    }
+}
+
+void dvi__predictor_correct_abreast(size_t unknowns, const dvi__abreast *memory, double h,
+                                    dvi__abreast *plain, dvi__abreast *x)
+{
+  dvi__abreast_mask is_used[DIFFERENCES];
+  for (int lane = 0; lane < DVI__ABREAST; lane++) {
+    const int used = count_of_lane(memory, h, USED, lane);
+    for (int k = 0; k < DIFFERENCES; k++) is_used[k][lane] = -(int64_t)(k < used);
+  }
+  memcpy(plain, x, unknowns * sizeof *x);
+  correct_guesses(unknowns, memory + FIRST, is_used, x);
+}
+
+/* Choose the number of differences of a lane. */
+static void use_differences(dvi__abreast *memory, double h, int lane,
+                            const dvi__abreast left[DIFFERENCES + 1])
+{
+  const int known = count_of_lane(memory, h, KNOWN, lane);
+  int used = 0;
+  for (int k = 1; k <= known; k++)
+    if (left[k][lane] < left[used][lane]) used = k;
+  memory[LENGTH][lane] = h;
+  memory[KNOWN][lane] = known < DIFFERENCES ? known + 1 : DIFFERENCES;
+  memory[USED][lane] = used;
+}
+
+WIDE static void renew_abreast(size_t unknowns, const dvi__abreast *plain, const dvi__abreast *x,
+                               dvi__abreast *difference, dvi__abreast left[DIFFERENCES + 1])
+{
+  dvi__abreast most[DIFFERENCES + 1] = {{0}};
+  for (size_t i = 0; i < unknowns; i++) {
+    dvi__abreast next = x[i] - plain[i];
+    for (size_t k = 0; k < DIFFERENCES; k++) {
+      dvi__abreast *kept = difference + k * unknowns + i;
+      const dvi__abreast change = next - *kept;
+      abreast_larger(&most[k], &next);
+      *kept = next;
+      next = change;
+    }
+    abreast_larger(&most[DIFFERENCES], &next);
+  }
+  memcpy(left, most, sizeof most);
+}
+
+void dvi__predictor_learn_abreast(size_t unknowns, dvi__abreast *memory, double h,
+                                  const dvi__abreast *plain, const dvi__abreast *x)
+{
+  dvi__abreast left[DIFFERENCES + 1];
+  renew_abreast(unknowns, plain, x, memory + FIRST, left);
+  for (int lane = 0; lane < DVI__ABREAST; lane++) use_differences(memory, h, lane, left);
+}

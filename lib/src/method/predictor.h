@@ -6,6 +6,8 @@
 #define DVI_METHOD_PREDICTOR_H
 #include <stddef.h>
 
+#include "num/simd/abreast.h"
+
 typedef struct dvi__predictor {
   size_t unknowns;
   double *plain; /* [unknowns] last guess without its expected error */
@@ -24,5 +26,12 @@ void dvi__predictor_learn(dvi__predictor *predictor, double *memory, double h, c
 
 /* Leave a guess out that is not like the others. */
 void dvi__predictor_leave(dvi__predictor *predictor);
+
+/* Predict and learn for several members abreast. Rows of the memory are those of one member, and
+ * plain [unknowns] takes the guesses without their expected errors. */
+void dvi__predictor_correct_abreast(size_t unknowns, const dvi__abreast *memory, double h,
+                                    dvi__abreast *plain, dvi__abreast *x);
+void dvi__predictor_learn_abreast(size_t unknowns, dvi__abreast *memory, double h,
+                                  const dvi__abreast *plain, const dvi__abreast *x);
 
 #endif

@@ -121,8 +121,7 @@ static dvi_status stationary_newton(const dvi__stationary *s, const dvi__station
   dvi__solve_report report;
   DVI_TRY(stationary_try(s, step, DVI__NEWTON, &report));
   step->stepper->counters->newtons++;
-  /* more than fast convergence takes, with a foreseen end */
-  if (report.iterations <= 3)
+  if (report.iterations <= DVI__FAST_NEWTON)
     step->stepper->bend = fmax(step->stepper->bend, report.bend);
   else
     stationary_judge(step->stepper, &report);

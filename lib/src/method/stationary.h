@@ -21,6 +21,10 @@ typedef struct dvi__stationary_step {
 /* Numbers in the stepper's memory that tell when fixed-point iteration is tried again. */
 enum { DVI__LADDER = 2 };
 
+/* The most iterations of Newton's method that fast convergence takes, with a foreseen end. More
+ * leave a doubt of the solution's branch. */
+enum { DVI__FAST_NEWTON = 3 };
+
 typedef struct dvi__stationary {
   dvi__solver *solver;
   double *x;         /* [unknowns] the solution */

@@ -47,6 +47,10 @@ extern const dvi__factor_kind dvi__definite_factor;  /* ldl.c */
 extern const dvi__factor_kind dvi__bordered_factor;  /* border.c */
 extern const dvi__factor_kind dvi__iterative_factor; /* iterative.c */
 
+/* The order [columns] in which dvi__definite_factor eliminates the columns of a pattern.
+ * DVI_NO_MEMORY. */
+dvi_status dvi__definite_order(const dvi__pattern *pattern, int *order);
+
 /* dvi__linear_share for a factor of dvi__definite_factor. DVI_NO_MEMORY. */
 dvi_status dvi__definite_share(const void *factored, const dvi__pattern *pattern, void **factor);
 

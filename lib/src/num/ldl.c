@@ -111,11 +111,17 @@ static dvi_status make_columns(definite *f, int n)
   return f->start[n] > 0 && (f->row == NULL || f->L == NULL) ? refuse_memory(n) : DVI_OK;
 }
 
+dvi_status dvi__definite_order(const dvi__pattern *A, int *order)
+{
+  const int n = A->columns;
+  return amd_order(n, A->start, A->row, order, NULL, NULL) == AMD_OK ? DVI_OK : refuse_memory(n);
+}
+
 static dvi_status ldl_analyse(definite *f, const dvi__pattern *A)
 {
   const int n = A->columns;
   DVI_TRY(ldl_lay_out(f, (size_t)n));
-  if (amd_order(n, A->start, A->row, f->order, NULL, NULL) != AMD_OK) return refuse_memory(n);
+  DVI_TRY(dvi__definite_order(A, f->order));
   count_columns(f, A);
   DVI_TRY(count_operations(f, n) > DENSE_FROM * (double)f->start[n] ? make_blocks(f, A)
                                                                     : make_columns(f, n));

@@ -2,9 +2,11 @@
  * Newton: Hairer and Wanner 1996, sec. IV.8). */
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 #include "core/status.h"
 #include "num/finite.h"
+#include "solve/newton.h"
 #include "solve/solver_struct.h"
 
 enum { MOST_ITERATIONS = 40 };
@@ -78,12 +80,7 @@ static double expected_part(const dvi__history *history, double correction, int 
   return history->contraction * (kept ? 1 : history->contraction) * (history->own / correction);
 }
 
-/* What the end of an iteration is foreseen from, where that is possible. */
-typedef struct outlook {
-  double next;   /* the next correction's own part, as a part of this one */
-  double unseen; /* the part of this correction that no longer counts */
-  double reach;  /* the first correction by the factor in use, as a part of the unknowns */
-} outlook;
+typedef dvi__outlook outlook;
 
 /* Look ahead. The part that no longer counts is that of the largest unknowns, and of the group that
  * changes most. An unknown alone may be small by chance, and only keeps its digits. The ratio of
@@ -112,6 +109,13 @@ static int keeps_factor(const dvi__solver *s, const dvi__history *history, const
     return 1;
   for (int i = 1; i < most && part > now->unseen; i++) part *= now->next;
   return part <= now->unseen;
+}
+
+/* Tell, after the second correction, whether a guess leads astray. */
+static int leads_astray(const dvi__history *history, const dvi__criteria *criteria,
+                        double correction, double whole, double size)
+{
+  return correction > criteria->noise * (whole + size) && dvi__misleading(history, whole);
 }
 
 /* Find whether the rows are at their floor, where corrections settle or do not shrink any more, and
@@ -170,11 +174,65 @@ dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__so
     growing = progress == DVI__STALLED ? growing + 1 : 0;
     if (growing == 2 || report->correction > 1e300) break;
     if (wary && report->iterations == 2 && !converged &&
-        report->correction > criteria.noise * (whole + size) && dvi__misleading(&history, whole))
+        leads_astray(&history, &criteria, report->correction, whole, size))
       break;
     kept = converged || keeps_factor(s, &history, &now);
   }
   if (converged) return DVI_OK;
   return dvi__fail(DVI_NOT_CONVERGED, "Newton's method does not settle (change %.1e after %.1e)",
                    history.last, history.before);
+}
+
+/* ---- one of many problems side by side ---- */
+
+void dvi__newton_begin(dvi__newton_course *course)
+{
+  *course = (dvi__newton_course){.now = {.next = HUGE_VAL, .reach = HUGE_VAL}};
+}
+
+static double largest_of_groups(int groups, const double *largest)
+{
+  double most = 0;
+  for (int i = 0; i < groups; i++) most = largest[i] > most ? largest[i] : most;
+  return most;
+}
+
+static double worst_of_groups(int groups, double least, const double *of, const double *to)
+{
+  double worst = 0;
+  for (int i = 0; i < groups; i++)
+    worst = dvi__worse_ratio(worst, of[i], to[i] > least ? to[i] : least);
+  return worst;
+}
+
+/* Report as dvi__solver_note. */
+static void note_groups(const dvi__solver *s, dvi__newton_course *course,
+                        const dvi__newton_correction *of, double whole)
+{
+  const double least = dvi__solver_least_part(s) * whole;
+  if (course->report.iterations == 1)
+    memcpy(course->before, of->change, (size_t)of->groups * sizeof *of->change);
+  if (course->report.iterations != 2) return;
+  course->report.first = worst_of_groups(of->groups, least, course->before, of->whole);
+  course->report.bend = worst_of_groups(of->groups, least, of->change, course->before);
+}
+
+dvi__progress dvi__newton_go_on(const dvi__solver *s, dvi__newton_course *course,
+                                const dvi__newton_correction *of)
+{
+  const dvi__criteria criteria = newton_criteria(s);
+  const double correction = largest_of_groups(of->groups, of->change),
+               whole = largest_of_groups(of->groups, of->whole),
+               part = worst_of_groups(of->groups, 0, of->change, of->whole);
+  const int iterations = ++course->report.iterations;
+  dvi__history *history = &course->history;
+  note_groups(s, course, of, whole);
+  const dvi__progress progress = dvi__test_correction(correction, history, &criteria, whole,
+                                                      of->size);
+  look_ahead(s, history, correction, whole, iterations > 1, part, &course->now);
+  if (progress != DVI__STALLED && course->now.next <= course->now.unseen) return DVI__CONVERGED;
+  if (iterations == 2 && leads_astray(history, &criteria, correction, whole, of->size))
+    return DVI__STALLED;
+  return progress == DVI__GO_ON && keeps_factor(s, history, &course->now) ? DVI__GO_ON
+                                                                          : DVI__STALLED;
 }

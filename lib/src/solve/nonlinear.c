@@ -129,7 +129,7 @@ double dvi__solver_worst_ratio(const dvi__solver *solver, double least, const do
     const size_t count = (size_t)(first + group < unknowns ? group : unknowns - first);
     const double one = dvi__largest(count, of + first),
                  other = fmax(dvi__largest(count, to + first), least);
-    if (one > worst * other) worst = other > 0 ? one / other : HUGE_VAL;
+    worst = dvi__worse_ratio(worst, one, other);
   }
   return worst;
 }
@@ -329,6 +329,16 @@ static dvi_status fixed_point_begin(dvi__solver *s, const double *x)
  * method factors. */
 static const dvi__criteria frozen_criteria = {
     .stagnant = 0.35, .noise = 1e4 * DBL_EPSILON, .slowest = 0.3, .steady = 1};
+
+dvi__criteria dvi__simplified_criteria(void)
+{
+  return frozen_criteria;
+}
+
+int dvi__simplified_most(void)
+{
+  return MOST_FIXED_POINT_ITERATIONS;
+}
 
 /* Report on the first two corrections of an iteration with the Jacobian of its guess. */
 static void note_frozen(const dvi__history *history, double whole, dvi__solve_report *report)

@@ -38,4 +38,12 @@ dvi__criteria dvi__fixed_point_criteria(int patient, int own_variables);
 /* Give the largest number of iterations of the fixed point rung. */
 int dvi__fixed_point_most(int patient);
 
+/* Give the criteria and the largest number of iterations of simplified Newton's method. */
+dvi__criteria dvi__simplified_criteria(void);
+int dvi__simplified_most(void);
+
+/* Tell, after two corrections, whether the guess is so far off that another solution might be
+ * found. */
+int dvi__misleading(const dvi__history *history, double whole);
+
 #endif

@@ -1,6 +1,8 @@
 /* The inside of a solver, for the files of this room. */
 #ifndef DVI_SOLVE_SOLVER_STRUCT_H
 #define DVI_SOLVE_SOLVER_STRUCT_H
+#include <math.h>
+
 #include "solve/nonlinear.h"
 #include "solve/progress.h"
 
@@ -56,6 +58,13 @@ double dvi__solver_least_part(const dvi__solver *solver);
 double dvi__solver_worst_ratio(const dvi__solver *solver, double least, const double *of,
                                const double *to);
 
+/* Give the larger one of a ratio and one/other. */
+static inline double dvi__worse_ratio(double worst, double one, double other)
+{
+  if (!(one > worst * other)) return worst;
+  return other > 0 ? one / other : HUGE_VAL;
+}
+
 /* Report on the first two corrections of an iteration, each after it was made. */
 void dvi__solver_note(const dvi__solver *solver, const double *x, dvi__solve_report *report);
 
@@ -79,10 +88,6 @@ dvi_status dvi__kinsol_note(dvi__kinsol *kinsol, int i, const double *next, doub
 int dvi__kinsol_certify_known(dvi__kinsol *kinsol, int count);
 dvi_status dvi__kinsol_solve(dvi__kinsol *kinsol, double size, double *x,
                              dvi__solve_report *report);
-
-/* Tell, after two corrections, whether the guess is so far off that another solution might be
- * found. */
-int dvi__misleading(const dvi__history *history, double whole);
 
 /* Replace x by x - correction. Gives the largest correction and the largest x. */
 void dvi__correct(int count, const double *correction, double *x, double *largest_correction,

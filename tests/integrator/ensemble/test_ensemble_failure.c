@@ -346,7 +346,8 @@ static const struct {
               {"kepler", "galerkin"},
               {"kepler", "galerkin:degree=8"},
               {"kepler", "composition:order=4,base=galerkin"},
-              {"double-pendulum", "midpoint"}};
+              {"double-pendulum", "midpoint"},
+              {"spherical-constrained", "verlet"}};
 
 START_TEST(creation_survives_every_failure_of_memory)
 {
@@ -395,5 +396,5 @@ SUITE(ensemble_failure)
   tcase_add_loop_test(tests, a_member_that_fails_stays_and_the_others_go_on, 0, 24);
   tcase_add_test(tests, a_fatal_failure_is_worse_than_an_earlier_member);
   tcase_add_test(tests, a_state_that_is_not_finite_is_not_taken);
-  tcase_add_loop_test(tests, creation_survives_every_failure_of_memory, 0, 5);
+  tcase_add_loop_test(tests, creation_survives_every_failure_of_memory, 0, 6);
 }

@@ -40,10 +40,9 @@ START_TEST(a_step_costs_one_gradient_and_nothing_else)
 }
 END_TEST
 
-/* Newton's method begins with the forces at the end of the last step. Linear friction takes one
- * correction, whose result is tested with the forces of the kick. Where v is small beside its
- * roundings, it takes another. */
-START_TEST(a_step_with_linear_friction_evaluates_forces_twice)
+/* Newton's method begins without friction. Linear friction takes one correction, whose result is
+ * tested with the forces of the kick. Where v is small beside its roundings, it takes another. */
+START_TEST(a_step_with_linear_friction_evaluates_forces_three_times)
 {
   problem *damped = create_problem("damped-driven", NULL);
   dvi_integrator *integrator = start_integrator(damped, "verlet");
@@ -52,8 +51,8 @@ START_TEST(a_step_with_linear_friction_evaluates_forces_twice)
   dvi_integrator_counters(integrator, &before);
   advance(integrator, 0.1, 200);
   dvi_integrator_counters(integrator, &after);
-  ck_assert_int_ge(after.gradients - before.gradients, 3 * 200);
-  ck_assert_int_le(after.gradients - before.gradients, 3 * 200 + 10);
+  ck_assert_int_ge(after.gradients - before.gradients, 4 * 200);
+  ck_assert_int_le(after.gradients - before.gradients, 4 * 200 + 10);
   ck_assert_int_eq(after.jacobians - before.jacobians, 200);
   /* one coordinate needs no factor */
   ck_assert_int_eq(after.factorizations, 0);
@@ -62,54 +61,84 @@ START_TEST(a_step_with_linear_friction_evaluates_forces_twice)
 }
 END_TEST
 
-/* Air that drives a body backward in time, and a kick in the second step. */
+/* A constant force a and a force F(v), which act from the end of the first step on. */
+typedef struct kicks {
+  double h, a;
+  double (*F)(double v);
+} kicks;
+
+static int acts(const kicks *of, double t)
+{
+  return fabs(t) > fabs(of->h) / 2;
+}
+
 static int kick_value(double t, const double *q, double *V, void *user)
 {
-  (void)user;
-  *V = t < -0.05 ? -140 * q[0] : 0;
+  const kicks *of = user;
+  *V = acts(of, t) ? -of->a * q[0] : 0;
   return 0;
 }
 
 static int kick_gradient(double t, const double *q, double *V_q, void *user)
 {
-  (void)q, (void)user;
-  V_q[0] = t < -0.05 ? -140 : 0;
+  const kicks *of = user;
+  (void)q;
+  V_q[0] = acts(of, t) ? -of->a : 0;
   return 0;
 }
 
-static int drag(double t, const double *q, const double *v, double *F, void *user)
+static int friction(double t, const double *q, const double *v, double *F, void *user)
 {
-  (void)t, (void)q, (void)user;
-  F[0] = -fabs(v[0]) * v[0];
+  const kicks *of = user;
+  (void)q;
+  F[0] = acts(of, t) ? of->F(v[0]) : 0;
   return 0;
 }
 
-/* v = g + |v|v/20 has three solutions. That of short steps is the one near g. The velocity before
- * the kick is nearly where the equation's slope vanishes. */
-START_TEST(friction_has_the_velocity_of_short_steps)
+static double quadratic_drag(double v)
 {
-  const dvi_potential potential = {.value = kick_value, .gradient = kick_gradient};
-  const dvi_force force = {.value = drag};
+  return -fabs(v) * v;
+}
+
+/* v = 1 + F(v)/20 for v = 1.1 and v = 1.9. */
+static double drive(double v)
+{
+  return 20 * (v - 1 + (v - 1.1) * (v - 1.9));
+}
+
+/* The equation of the second step's velocity has several solutions. That of short steps is the one
+ * near M^-1 p. The velocity before the kick would lead to another one. */
+static void check_second_velocity(kicks *of, double first, double second)
+{
+  const dvi_potential potential = {.value = kick_value, .gradient = kick_gradient, .user = of};
+  const dvi_force force = {.value = friction, .user = of};
   const dvi_system_terms terms = {.dimension = 1,
                                   .mass.scalar = 1,
                                   .potentials = &potential,
                                   .potential_count = 1,
                                   .forces = &force,
                                   .force_count = 1};
-  const double h = -0.1, before = 9.5, q = 0, p = before - before * before / 20;
+  const double q = 0;
   dvi_system *system = NULL;
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
   dvi_integrator *integrator = create_integrator(system, "verlet");
-  ck_assert_int_eq(dvi_integrator_start(integrator, 0, &q, &p), DVI_OK);
-  advance(integrator, h, 1);
+  ck_assert_int_eq(dvi_integrator_start(integrator, 0, &q, &first), DVI_OK);
+  advance(integrator, of->h, 1);
   const double q1 = dvi_integrator_q(integrator)[0];
-  ck_assert_double_eq_tol(q1, h * before, 1e-14);
-  const double g = dvi_integrator_p(integrator)[0] - h / 2 * -140;
-  advance(integrator, h, 1);
-  ck_assert_double_eq_tol((dvi_integrator_q(integrator)[0] - q1) / h, 10 * (1 - sqrt(1 - g / 5)),
-                          1e-12);
+  ck_assert_double_eq_tol(q1, of->h * first, 1e-14);
+  advance(integrator, of->h, 1);
+  ck_assert_double_eq_tol((dvi_integrator_q(integrator)[0] - q1) / of->h, second, 1e-12);
   dvi_integrator_destroy(&integrator);
   dvi_system_destroy(&system);
+}
+
+/* Air drives a body back in time, v = g + v^2/20. */
+START_TEST(friction_has_the_velocity_of_short_steps)
+{
+  const double first = 9.5, g = first + first * first / 20 - 14;
+  kicks back = {-0.1, 140, quadratic_drag}, ahead = {0.1, -20.9, drive};
+  check_second_velocity(&back, first, 10 * (1 - sqrt(1 - g / 5)));
+  check_second_velocity(&ahead, 2, 1.1);
 }
 END_TEST
 
@@ -192,7 +221,7 @@ SUITE(verlet)
 {
   tcase_add_test(tests, a_step_is_kick_drift_kick);
   tcase_add_test(tests, a_step_costs_one_gradient_and_nothing_else);
-  tcase_add_test(tests, a_step_with_linear_friction_evaluates_forces_twice);
+  tcase_add_test(tests, a_step_with_linear_friction_evaluates_forces_three_times);
   tcase_add_test(tests, friction_has_the_velocity_of_short_steps);
   tcase_add_test(tests, a_general_lagrangian_is_refused_by_name);
   tcase_add_loop_test(tests, what_it_cannot_do_is_refused_by_name, 0, 9);

@@ -16,4 +16,13 @@ const double *dvi__partitioned_step_multiplier(const dvi__stepper *self);
   .step = dvi__partitioned_step, .multiplier = dvi__partitioned_step_multiplier, \
   DVI__ONE_STEP_OPERATIONS
 
+/* Members of an ensemble side by side (partitioned_lanes.c), with the entries. */
+dvi_status dvi__partitioned_prepare_lanes(dvi__stepper *self, int capacity);
+void dvi__partitioned_clear_lanes(dvi__stepper *self);
+void dvi__partitioned_step_lanes(dvi__stepper *self, dvi__members *members, double h);
+
+#define DVI__PARTITIONED_LANES                                                                  \
+  .prepare_lanes = dvi__partitioned_prepare_lanes, .clear_lanes = dvi__partitioned_clear_lanes, \
+  .step_lanes = dvi__partitioned_step_lanes
+
 #endif

@@ -79,4 +79,5 @@ const dvi__method dvi__vprk = {
     .uses = DVI__ONE_FORM | DVI__POTENTIAL,
     .create = vprk_create,
     DVI__PARTITIONED_OPERATIONS,
+    DVI__PARTITIONED_LANES,
 };

@@ -1,16 +1,17 @@
 #include "method/element/blocks.h"
 
-#include <float.h>
 #include <math.h>
 #include <string.h>
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "num/simd/small_inverse.h"
 #include "num/simd/wide.h"
+#include "num/simd/width.h"
 
 /* Largest block. Inverting and multiplying it takes the cubes and squares of its size, where
  * factors of its sparse pattern may take less. */
-enum { MOST_ROWS = 96 };
+enum { MOST_ROWS = DVI__SMALL_INVERSE_MOST };
 
 struct dvi__blocks {
   int count;
@@ -139,66 +140,6 @@ double *dvi__blocks_jacobian(dvi__blocks *blocks)
 
 /* ---- inverses ---- */
 
-static void swap_numbers(int count, double *a, double *b, int stride)
-{
-  for (int i = 0; i < count * stride; i += stride) {
-    const double last = a[i];
-    a[i] = b[i];
-    b[i] = last;
-  }
-}
-
-static int largest_row(int m, const double *column, int from)
-{
-  int row = from;
-  for (int i = from + 1; i < m; i++)
-    if (fabs(column[i]) > fabs(column[row])) row = i;
-  return row;
-}
-
-static inline void subtract_column(int m, double by, const double *restrict column,
-                                   double *restrict other)
-{
-  for (int i = 0; i < m; i++) other[i] -= column[i] * by;
-}
-
-/* Take column k out of all others, and replace it by that of the inverse. */
-WIDE static void eliminate(int m, int k, double *A)
-{
-  double *column = A + (size_t)k * (size_t)m;
-  const double inverse = 1 / column[k];
-  for (int j = 0; j < m; j++) {
-    double *other = A + (size_t)j * (size_t)m;
-    const double by = other[k] / column[k];
-    if (j == k) continue;
-    subtract_column(m, by, column, other);
-    other[k] = by;
-  }
-  for (int i = 0; i < m; i++) column[i] *= -inverse;
-  column[k] = inverse;
-}
-
-/* Replace A [m*m] by its inverse. Returns the sign of its determinant, 0 if A is singular. */
-static int invert(int m, double *A)
-{
-  int exchanged[MOST_ROWS] = {0}, sign = 1;
-  for (int k = 0; k < m && k < MOST_ROWS; k++) {
-    const int row = exchanged[k] = largest_row(m, A + (size_t)k * (size_t)m, k);
-    if (row != k) {
-      swap_numbers(m, A + k, A + row, m);
-      sign = -sign;
-    }
-    const double pivot = A[k * m + k];
-    if (!(fabs(pivot) >= DBL_MIN) || isinf(pivot)) return 0;
-    if (pivot < 0) sign = -sign;
-    eliminate(m, k, A);
-  }
-  for (int k = m < MOST_ROWS ? m : MOST_ROWS; k-- > 0;)
-    if (exchanged[k] != k)
-      swap_numbers(m, A + (size_t)k * (size_t)m, A + (size_t)exchanged[k] * (size_t)m, 1);
-  return sign;
-}
-
 dvi_status dvi__blocks_invert(dvi__blocks *blocks, double *numbers)
 {
   double *A = numbers + 1;
@@ -208,7 +149,7 @@ dvi_status dvi__blocks_invert(dvi__blocks *blocks, double *numbers)
   A = memcpy(A + blocks->entries, A, blocks->entries * sizeof *A);
   for (int b = 0; b < blocks->count && sign != 0; b++) {
     const int m = blocks->first[b + 1] - blocks->first[b];
-    sign *= invert(m, A);
+    sign *= dvi__small_invert(m, A);
     A += m * m;
   }
   *numbers = sign;
@@ -244,4 +185,36 @@ WIDE static void solve_blocks(const dvi__blocks *blocks, const double *A, double
 void dvi__blocks_solve(const dvi__blocks *blocks, const double *numbers, double *R)
 {
   solve_blocks(blocks, numbers + 1 + blocks->entries, R);
+}
+
+INLINE void add_products(size_t width, const double *restrict column, const double *restrict by,
+                         double *restrict sum)
+{
+  for (size_t k = 0; k < width; k++) sum[k] += column[k] * by[k];
+}
+
+WIDE static void solve_members(const dvi__blocks *blocks, size_t width, size_t stride,
+                               const double *A, double *R, double *sum)
+{
+  for (int b = 0; b < blocks->count; b++) {
+    const int m = blocks->first[b + 1] - blocks->first[b],
+              *unknown = blocks->unknown + blocks->first[b];
+    memset(sum, 0, (size_t)m * width * sizeof *sum);
+    for (int j = 0; j < m; j++)
+      for (int i = 0; i < m; i++, A += stride)
+        add_products(width, A, R + (size_t)unknown[j] * width, sum + (size_t)i * width);
+    for (int i = 0; i < m; i++)
+      memcpy(R + (size_t)unknown[i] * width, sum + (size_t)i * width, width * sizeof *sum);
+  }
+}
+
+void dvi__blocks_solve_members(const dvi__blocks *blocks, int width, int stride,
+                               const double *inverses, double *R, double *work)
+{
+  solve_members(blocks, (size_t)width, (size_t)stride, inverses, R, work);
+}
+
+size_t dvi__blocks_inverses(const dvi__blocks *blocks)
+{
+  return 1 + blocks->entries;
 }

@@ -31,6 +31,14 @@ dvi_status dvi__blocks_invert(dvi__blocks *blocks, double *numbers);
 /* Replace R by the inverse blocks times R. */
 void dvi__blocks_solve(const dvi__blocks *blocks, const double *numbers, double *R);
 
+/* Give the place of the inverses among the numbers. */
+size_t dvi__blocks_inverses(const dvi__blocks *blocks);
+
+/* Replace R [unknowns*width] of members side by side by their inverses times R, each with the bits
+ * of one alone. Rows of the inverses are `stride` apart. `work` has room for R. */
+void dvi__blocks_solve_members(const dvi__blocks *blocks, int width, int stride,
+                               const double *inverses, double *R, double *work);
+
 /* Add the magnitudes of the blocks times those of x to sum. */
 void dvi__blocks_add_moved(const dvi__blocks *blocks, const double *numbers, const double *x,
                            double *sum);

@@ -23,6 +23,9 @@
 #define OPERATIONS_PAID 3e4
 #define MOST_NUMBERS 2e8
 
+/* Full matrices of fewer unknowns are faster than products and sparse decoupled systems. */
+enum { LEAST_ROWS = 200 };
+
 /* ---- choice ---- */
 
 static dvi__decoupled *newton_systems(const dvi__element *own)
@@ -81,6 +84,22 @@ static dvi_status newton_create_systems(dvi__element *own)
   return status == DVI_SINGULAR ? DVI_OK : status; /* none in this space */
 }
 
+/* Let a time-transformed system, whose Hessian is full and whose decoupled systems are sparse all
+ * the same, have the operator. */
+static dvi_status newton_choose_rank_two(dvi__element *own)
+{
+  const dvi__pattern *coupling = dvi__action_coupling(own->action);
+  const double n = coupling->columns;
+  if (dvi__action_unknowns(own->action) < LEAST_ROWS || dvi__pattern_entries(coupling) < n * n)
+    return DVI_OK;
+  DVI_TRY(newton_create_systems(own));
+  dvi__decoupled *systems = newton_systems(own);
+  if (systems == NULL || !dvi__decoupled_has_rank_two(systems)) return DVI_OK;
+  own->newton.is_operator = 1;
+  own->newton.systems = systems;
+  return DVI_OK;
+}
+
 /* Choose the form. The parts of row terms in the Jacobian have no products, and it stays a
  * matrix. */
 static dvi_status newton_choose_form(dvi__element *own)
@@ -90,7 +109,8 @@ static dvi_status newton_choose_form(dvi__element *own)
   own->newton.is_operator = 0;
   if (dvi__action_has_terms(own->action)) return DVI_OK;
   DVI_TRY(newton_estimate_cost(own, HUGE_VAL, &one));
-  if (s * s * s * one.operations <= MOST_WHOLE) return DVI_OK;
+  DVI_TRY(newton_choose_rank_two(own));
+  if (own->newton.is_operator || s * s * s * one.operations <= MOST_WHOLE) return DVI_OK;
   DVI_TRY(newton_create_systems(own));
   DVI_TRY(newton_estimate_cost(own, 0, &one));
   if (s * s * s * one.operations <= MOST_WHOLE) return DVI_OK;
@@ -189,7 +209,7 @@ static dvi_status newton_jacobian(void *of, const double *Y, double *values)
                                  : dvi__action_jacobian(own->action, Y, values);
 }
 
-static dvi_status newton_invert_blocks(const dvi__element *own, const double *Y, double *inverse)
+dvi_status dvi__element_invert_blocks(const dvi__element *own, const double *Y, double *inverse)
 {
   own->counters->jacobians++;
   DVI_TRY(dvi__action_jacobian(own->action, Y, dvi__blocks_jacobian(own->blocks)));
@@ -200,7 +220,7 @@ static dvi_status newton_freeze(void *of, const double *Y)
 {
   const dvi__element *own = of;
   double *point = own->frozen + DVI__FROZEN_POINT;
-  if (own->by_blocks) return own->keeps ? DVI_OK : newton_invert_blocks(own, Y, point);
+  if (own->by_blocks) return own->keeps ? DVI_OK : dvi__element_invert_blocks(own, Y, point);
   if (own->keeps_whole) {
     if (!own->keeps) DVI_TRY(dvi__solver_jacobian(own->solver, Y, point));
     return dvi__solver_take_jacobian(own->solver, point);

@@ -13,10 +13,6 @@
 #include "num/finite.h"
 #include "solve/certify.h"
 
-/* Number of iterations that a kept factor may cost more than a new one, about as much as making
- * one. */
-enum { MORE_ITERATIONS = 2 };
-
 /* Largest number of steps that skip an iteration after it failed. It is one at first, and doubles
  * with each failure. */
 static const double longest_wait = 64;
@@ -361,7 +357,7 @@ static dvi_status element_solve_simplified(dvi__stepper *self, const dvi__elemen
   }
   const int good = status == DVI_OK &&
                    (!own->keeps ||
-                    report->iterations <= frozen[DVI__FROZEN_ITERATIONS] + MORE_ITERATIONS);
+                    dvi__element_keeps(frozen[DVI__FROZEN_ITERATIONS], report->iterations));
   frozen[DVI__FROZEN_H] = good ? at->h : 0;
   if (!own->keeps) frozen[DVI__FROZEN_ITERATIONS] = report->iterations;
   return status;
@@ -373,16 +369,21 @@ static double *element_frozen_part(const dvi__stepper *self)
   return self->memory + dvi__element_forces(self) + dvi__action_forces_count(own->action);
 }
 
-/* Solve by the blocks, whose part is the last but one of the memory. */
+/* It is the last but one of the memory. */
+size_t dvi__element_blocks_part(const dvi__stepper *self)
+{
+  const dvi__element *own = self->own;
+  return self->memory_count - DVI__FROZEN_POINT - dvi__blocks_numbers(own->blocks) -
+         (size_t)dvi__action_unknowns(own->action);
+}
+
 static dvi_status element_solve_by_blocks(dvi__stepper *self, const dvi__element_place *at,
                                           double *Y, dvi__solve_report *report)
 {
   dvi__element *own = self->own;
-  const size_t behind = DVI__FROZEN_POINT + dvi__blocks_numbers(own->blocks) +
-                        (size_t)dvi__action_unknowns(own->action);
   own->by_blocks = own->in_blocks = 1;
   const dvi_status status = element_solve_simplified(
-      self, at, self->memory + self->memory_count - behind, Y, report);
+      self, at, self->memory + dvi__element_blocks_part(self), Y, report);
   own->in_blocks = 0;
   return status;
 }

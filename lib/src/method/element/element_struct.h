@@ -33,6 +33,10 @@ typedef struct dvi__newton_form {
  * or the inverses of its blocks. */
 enum { DVI__FROZEN_H, DVI__FROZEN_ITERATIONS, DVI__FROZEN_POINT };
 
+/* Number of iterations that a kept factor may cost more than a new one, about as much as making
+ * one. */
+enum { DVI__MORE_ITERATIONS = 2 };
+
 typedef struct dvi__element {
   dvi__action *action;
   dvi_counters *counters;
@@ -87,6 +91,16 @@ int dvi__element_shows_residuals(const dvi__element *own);
 /* Tell the driver whether the element marches. */
 void dvi__element_admit_march(dvi__stepper *self);
 
+/* The most iterations with kept blocks that are as good as new ones, of which a new one took that
+ * many. */
+static inline int dvi__element_keeps(double iterations_with_new, int iterations)
+{
+  return iterations <= iterations_with_new + DVI__MORE_ITERATIONS;
+}
+
+/* Give the frozen part of the blocks in the memory. */
+size_t dvi__element_blocks_part(const dvi__stepper *self);
+
 /* Advance the state by the increments of a solved step, and keep its path. */
 void dvi__element_advance(dvi__stepper *self, dvi__state *state, double h);
 
@@ -96,6 +110,9 @@ int dvi__element_is_ladder(const dvi__element *own);
 /* Set the members of the equations that Newton's methods need, and free their memory. */
 void dvi__element_set_newton(dvi__equations *equations);
 void dvi__element_clear_newton(dvi__element *own);
+
+/* Invert the blocks of the Jacobian at Y into a frozen part's point. */
+dvi_status dvi__element_invert_blocks(const dvi__element *own, const double *Y, double *inverse);
 
 /* Find whether the factors of simplified Newton's method are too expensive for the ladder.
  * DVI_NO_MEMORY, DVI_BAD_SIZE, DVI_SOLVER_FAILED. */

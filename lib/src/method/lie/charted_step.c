@@ -8,18 +8,7 @@
 #include "num/compensated.h"
 #include "system/chart/charted.h"
 
-/* The memory is that of galerkin, with the last path in the coordinates of the next chart, followed
- * by this path in its own chart. */
-typedef struct charted_step {
-  dvi__charted *charted;
-  dvi__stepper inner; /* galerkin in the charts */
-  /* [4 nx] q, p and their compensations in the charts; the arrays below lie behind */
-  double *local;
-  double *xi, *rate; /* [nx] */
-  double *offset;    /* [nx*s] points of the path */
-  double *supply;    /* [1 + symmetries] */
-  double power[2];   /* what damping and forces supply to the energy, and its compensation */
-} charted_step;
+typedef dvi__charted_step_of charted_step;
 
 /* Give the count of a path's numbers and those of row terms, and the degree. */
 static size_t unknowns_of(const charted_step *own)
@@ -146,31 +135,35 @@ static dvi_status add_supplies(const dvi__stepper *self, const double *path, dou
   return DVI_OK;
 }
 
-dvi_status dvi__charted_step(dvi__stepper *self, dvi__state *state, double h)
+void dvi__charted_step_arrive(const dvi__charted_step_of *own, double *memory,
+                              const dvi__state *local, dvi__state *state)
 {
-  const charted_step *own = self->own;
   const dvi__action *action = dvi__element_action(&own->inner);
-  const size_t unknowns = unknowns_of(own);
-  double *path = self->memory + DVI__LAST_Y, *own_path = self->memory + own->inner.memory_count;
-  dvi__state local;
-  DVI_TRY(charted_step_solve(self, state, h, &local));
-  memcpy(own_path, path, unknowns * sizeof(double));
-  if (state->supplied != NULL) DVI_TRY(add_supplies(self, own_path, h, state));
+  double *path = memory + DVI__LAST_Y, *own_path = memory + own->inner.memory_count;
+  memcpy(own_path, path, unknowns_of(own) * sizeof(double));
   dvi__charted_arrive(own->charted,
-                      &(dvi__phase){.q = local.q,
-                                    .p = local.p,
-                                    .q_compensation = local.q_compensation,
-                                    .p_compensation = local.p_compensation},
+                      &(dvi__phase){.q = local->q,
+                                    .p = local->p,
+                                    .q_compensation = local->q_compensation,
+                                    .p_compensation = local->p_compensation},
                       &(dvi__phase){.q = state->q,
                                     .p = state->p,
                                     .q_compensation = state->q_compensation,
                                     .p_compensation = state->p_compensation});
   /* The next guess continues the same path in the charts at its end. */
   dvi__action_at_fit_points(action, own_path, own->offset);
-  dvi__charted_follow(own->charted, state->q, local.q, degree_of(own), own->offset);
+  dvi__charted_follow(own->charted, state->q, local->q, degree_of(own), own->offset);
   dvi__action_fit(action, own->offset, path);
-  state->t = local.t;
-  state->t_compensation = local.t_compensation;
+  state->t = local->t;
+  state->t_compensation = local->t_compensation;
+}
+
+dvi_status dvi__charted_step(dvi__stepper *self, dvi__state *state, double h)
+{
+  dvi__state local;
+  DVI_TRY(charted_step_solve(self, state, h, &local));
+  if (state->supplied != NULL) DVI_TRY(add_supplies(self, self->memory + DVI__LAST_Y, h, state));
+  dvi__charted_step_arrive(self->own, self->memory, &local, state);
   return DVI_OK;
 }
 

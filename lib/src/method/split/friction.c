@@ -24,7 +24,7 @@ struct dvi__friction {
   dvi__linear *matrix;          /* NULL if the pattern has the diagonal alone */
   double *values, *F_q, *F_v;   /* [entries] */
   double *residual, *given;     /* [n], residual or correction, and p0 - h/2 dV */
-  double *plain;                /* [n] the forces at M^-1 given */
+  double *v, *F;                /* [n], velocity of the step, and the forces at it */
 };
 
 /* ---- create ---- */
@@ -38,11 +38,12 @@ static dvi_status friction_allocate(dvi__friction *f)
   f->values = DVI_NEW(double, dvi__pattern_entries(&f->pattern));
   f->F_q = DVI_NEW(double, dvi__pattern_entries(&s->by_q));
   f->F_v = DVI_NEW(double, dvi__pattern_entries(&s->by_v));
-  f->residual = DVI_NEW(double, 3 * n);
+  f->residual = DVI_NEW(double, 4 * n);
   if (!f->mass_place || !f->by_v_place || !f->values || !f->F_q || !f->F_v || !f->residual)
     return dvi__fail(DVI_NO_MEMORY, "verlet: no memory for forces of %zu coordinates", n);
   f->given = f->residual + n;
-  f->plain = f->given + n;
+  f->v = f->given + n;
+  f->F = f->v + n;
   dvi__pattern_embed(&s->vv, &f->pattern, f->mass_place);
   dvi__pattern_embed(&s->by_v, &f->pattern, f->by_v_place);
   return DVI_OK;
@@ -89,19 +90,9 @@ void dvi__friction_destroy(dvi__friction **friction)
 
 /* ---- solve ---- */
 
-/* Forces of friction [n] at a velocity [n]. */
-typedef struct pushed {
-  double *F, *v;
-} pushed;
-
-static pushed pushed_in(const dvi__friction *f, double *memory)
+static dvi_status evaluate_force(dvi__friction *f, const dvi__state *state)
 {
-  return (pushed){memory, memory + f->system->n};
-}
-
-static dvi_status evaluate_force(dvi__friction *f, const dvi__state *state, const pushed *at)
-{
-  return dvi__forces(f->evaluator, DVI__FRICTION, 1, &state->t, state->q, at->v, at->F);
+  return dvi__forces(f->evaluator, DVI__FRICTION, 1, &state->t, state->q, f->v, f->F);
 }
 
 static dvi_status factor_diagonal(const dvi__friction *f)
@@ -113,14 +104,13 @@ static dvi_status factor_diagonal(const dvi__friction *f)
   return DVI_OK;
 }
 
-static dvi_status factor_matrix(dvi__friction *f, const dvi__state *state, double h,
-                                const pushed *at)
+static dvi_status factor_matrix(dvi__friction *f, const dvi__state *state, double h)
 {
   const dvi_system *s = f->system;
   const double *mass = s->mass_diagonal != NULL ? s->mass_diagonal : s->mass_values;
   const int in_mass = dvi__pattern_entries(&s->vv), in_by_v = dvi__pattern_entries(&s->by_v);
   f->counters->jacobians++;
-  DVI_TRY(dvi__forces_jacobian(f->evaluator, 1, &state->t, state->q, at->v, f->F_q, f->F_v));
+  DVI_TRY(dvi__forces_jacobian(f->evaluator, 1, &state->t, state->q, f->v, f->F_q, f->F_v));
   memset(f->values, 0, (size_t)dvi__pattern_entries(&f->pattern) * sizeof(double));
   for (int e = 0; e < in_mass; e++) f->values[f->mass_place[e]] = mass[e];
   for (int e = 0; e < in_by_v; e++) f->values[f->by_v_place[e]] -= 0.5 * h * f->F_v[e];
@@ -137,123 +127,82 @@ static dvi_status solve_matrix(dvi__friction *f, double *x)
 /* Correct v by one iteration, with a new matrix or the last one. *change becomes the largest
  * change. F stays as it is. */
 static dvi_status correct_velocity(dvi__friction *f, const dvi__state *state, double h, int renew,
-                                   const pushed *at, double *change)
+                                   double *change)
 {
   const int n = f->system->n;
   const double *mass = f->system->mass_diagonal, half = 0.5 * h;
   f->counters->residuals++;
   if (mass == NULL)
     DVI_TRY(
-        dvi__lagrangian_gradient(f->evaluator, 1, &state->t, state->q, at->v, NULL, f->residual));
+        dvi__lagrangian_gradient(f->evaluator, 1, &state->t, state->q, f->v, NULL, f->residual));
   for (int i = 0; i < n; i++) {
-    const double p = mass != NULL ? mass[i] * at->v[i] : f->residual[i];
-    f->residual[i] = f->given[i] + half * at->F[i] - p;
+    const double p = mass != NULL ? mass[i] * f->v[i] : f->residual[i];
+    f->residual[i] = f->given[i] + half * f->F[i] - p;
   }
-  if (renew) DVI_TRY(factor_matrix(f, state, h, at));
+  if (renew) DVI_TRY(factor_matrix(f, state, h));
   DVI_TRY(solve_matrix(f, f->residual));
   *change = dvi__largest((size_t)n, f->residual);
   if (!isfinite(*change))
     return dvi__fail(DVI_NOT_FINITE, "the velocity of the step is not finite");
-  for (int i = 0; i < n; i++) at->v[i] += f->residual[i];
+  for (int i = 0; i < n; i++) f->v[i] += f->residual[i];
   return DVI_OK;
 }
 
 /* Let F follow the last correction of v, which is as small as roundings, by its derivative. */
-static void follow_correction(const dvi__friction *f, const pushed *at)
+static void follow_correction(const dvi__friction *f)
 {
   const dvi__pattern *by_v = &f->system->by_v;
   for (int j = 0; j < by_v->columns; j++)
     for (int e = by_v->start[j]; e < by_v->start[j + 1]; e++)
-      at->F[by_v->row[e]] += f->F_v[e] * f->residual[j];
+      f->F[by_v->row[e]] += f->F_v[e] * f->residual[j];
 }
 
 /* Newton's method goes on until its corrections are roundings, or as small as roundings and no
  * longer smaller than the last. The matrix is kept while they shrink fast. */
-static dvi_status find_velocity(dvi__friction *f, const dvi__state *state, double h,
-                                const pushed *at)
+static dvi_status find_velocity(dvi__friction *f, const dvi__state *state, double h)
 {
   const size_t n = (size_t)f->system->n;
   double change = HUGE_VAL, before = HUGE_VAL;
   for (int iteration = 0; iteration < MOST_ITERATIONS; iteration++) {
     const double last = change;
     const int renew = iteration == 0 || !(last <= fast_change * before);
-    DVI_TRY(correct_velocity(f, state, h, renew, at, &change));
+    DVI_TRY(correct_velocity(f, state, h, renew, &change));
     before = last;
-    const double size = dvi__largest(n, at->v);
+    const double size = dvi__largest(n, f->v);
     if (change <= 4 * DBL_EPSILON * size || (change <= 1e-10 * size && change >= 0.5 * last)) {
-      follow_correction(f, at);
+      follow_correction(f);
       return DVI_OK;
     }
-    DVI_TRY(evaluate_force(f, state, at));
+    DVI_TRY(evaluate_force(f, state));
   }
   return dvi__fail(DVI_NOT_CONVERGED,
                    "the velocity of the step does not settle in %d iterations (change %.1e)",
                    (int)MOST_ITERATIONS, change);
 }
 
-size_t dvi__friction_memory(const dvi_system *system)
-{
-  return 2 * (size_t)system->n;
-}
-
-dvi_status dvi__friction_start(dvi__friction *f, const dvi__state *state, double *memory)
-{
-  const pushed at = pushed_in(f, memory);
-  dvi__mass_solve(f->evaluator, 1, state->p, at.v);
-  return evaluate_force(f, state, &at);
-}
-
-/* Tell whether the kick by the forces is no larger than any momentum without it. Two velocities
- * that solve the equation differ by their forces' kicks. One far from M^-1 p, near which that of
- * short steps is, has a large kick. */
-static int is_gentle(const dvi__friction *f, double h, const double *F)
-{
-  for (int i = 0; i < f->system->n; i++)
-    if (fabs(0.5 * h * F[i]) > fabs(f->given[i])) return 0;
-  return 1;
-}
-
-/* Put v at M^-1 p, with its forces, if these differ from those of the solution at v by a large part
- * of them. Where they do not, the large kick is one that hardly depends on v. */
-static dvi_status start_anew(dvi__friction *f, const dvi__state *state, const pushed *at, int *anew)
-{
-  const size_t n = (size_t)f->system->n;
-  double *v = f->residual, *F = f->plain;
-  dvi__mass_solve(f->evaluator, 1, f->given, v);
-  DVI_TRY(evaluate_force(f, state, &(pushed){F, v}));
-  double most = 0;
-  for (size_t i = 0; i < n; i++) most = fmax(most, fabs(F[i] - at->F[i]));
-  *anew = *anew || !(most <= 0.25 * dvi__largest(n, at->F));
-  if (!*anew) return DVI_OK;
-  memcpy(at->v, v, n * sizeof *v);
-  memcpy(at->F, F, n * sizeof *F);
-  return DVI_OK;
-}
-
-/* The last step's velocity is a guess near by where steps resolve the motion. Otherwise it may lead
- * to another solution, or to none. Newton's method then begins without friction, as for short
- * steps. */
+/* Newton's method begins without friction, near which the velocity of short steps is. The equation
+ * may have others, to which the last step's velocity may lead. */
 dvi_status dvi__friction_solve(dvi__friction *f, const dvi__state *state, double h,
-                               const double *V_q, double *memory)
+                               const double *V_q)
 {
-  const pushed at = pushed_in(f, memory);
   f->counters->newtons++;
   for (int i = 0; i < f->system->n; i++) f->given[i] = state->p[i] - 0.5 * h * V_q[i];
-  const dvi_status status = find_velocity(f, state, h, &at);
-  int anew = status != DVI_OK;
-  if (status < DVI_OK && status != DVI_SINGULAR) return status;
-  if (status == DVI_OK && is_gentle(f, h, at.F)) return DVI_OK;
-  DVI_TRY(start_anew(f, state, &at, &anew));
-  return anew ? find_velocity(f, state, h, &at) : DVI_OK;
+  dvi__mass_solve(f->evaluator, 1, f->given, f->v);
+  DVI_TRY(evaluate_force(f, state));
+  return find_velocity(f, state, h);
 }
 
-dvi_status dvi__friction_end(dvi__friction *f, const dvi__state *state, double *memory)
+dvi_status dvi__friction_end(dvi__friction *f, const dvi__state *state)
 {
-  const pushed at = pushed_in(f, memory);
-  return evaluate_force(f, state, &at);
+  return evaluate_force(f, state);
 }
 
-const double *dvi__friction_velocity(const dvi__friction *f, const double *memory)
+const double *dvi__friction_velocity(const dvi__friction *f)
 {
-  return memory + f->system->n;
+  return f->v;
+}
+
+const double *dvi__friction_force(const dvi__friction *f)
+{
+  return f->F;
 }

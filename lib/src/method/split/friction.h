@@ -18,21 +18,15 @@ dvi_status dvi__friction_create(const dvi_system *system, dvi_counters *counters
                                 dvi__friction **friction);
 void dvi__friction_destroy(dvi__friction **friction);
 
-/* The stepper's memory holds the forces F(t,q,v) [n] at the end of the last step, from which the
- * next one begins, and then v [n]. Count these numbers. */
-size_t dvi__friction_memory(const dvi_system *system);
-
-/* Set both at a first step, with v = M^-1 p. */
-dvi_status dvi__friction_start(dvi__friction *friction, const dvi__state *state, double *memory);
-
 /* Find v and the forces F(t,q,v) for a step of length h. V_q [n] is dV(q). */
 dvi_status dvi__friction_solve(dvi__friction *friction, const dvi__state *state, double h,
-                               const double *V_q, double *memory);
+                               const double *V_q);
 
 /* Evaluate the forces F(t,q,v) at the end of the step, with the same v. */
-dvi_status dvi__friction_end(dvi__friction *friction, const dvi__state *state, double *memory);
+dvi_status dvi__friction_end(dvi__friction *friction, const dvi__state *state);
 
-/* Give the velocity v [n] of the last step. */
-const double *dvi__friction_velocity(const dvi__friction *friction, const double *memory);
+/* Give v [n] and the forces [n] that were found or evaluated last. */
+const double *dvi__friction_velocity(const dvi__friction *friction);
+const double *dvi__friction_force(const dvi__friction *friction);
 
 #endif

@@ -12,11 +12,6 @@
 #include "system/dynamics/holonomic.h"
 #include "system/dynamics/holonomic_rows.h"
 
-enum { MOST_ITERATIONS = 50 };
-
-/* A matrix is kept while corrections shrink at least by this factor. */
-static const double fast_change = 0.25;
-
 struct dvi__rattle {
   const dvi_system *system;
   dvi__evaluator *evaluator;
@@ -191,6 +186,12 @@ dvi_status dvi__rattle_create(const dvi_system *system, dvi__evaluator *evaluato
   return status;
 }
 
+int dvi__rattle_has_matrix(const dvi__rattle *r, dvi__rattle_matrix *matrix)
+{
+  *matrix = (dvi__rattle_matrix){&r->pattern, r->first, r->left, r->right};
+  return r->definite != NULL;
+}
+
 void dvi__rattle_destroy(dvi__rattle **rattle)
 {
   dvi__rattle *r = *rattle;
@@ -352,25 +353,13 @@ static dvi_status correct(dvi__rattle *r, double h, double *lambda, double *move
   return DVI_OK;
 }
 
-/* Tell whether corrections are roundings, or will be after this one, or no longer shrink. The first
- * correction has none before it, and is settled only if it is a rounding. */
-static int is_settled(double moved, double last, double size)
-{
-  const double rounding = DBL_EPSILON * size, shrunk = moved / last;
-  if (moved <= rounding) return 1;
-  if (last == HUGE_VAL) return 0;
-  return (shrunk < fast_change && moved * shrunk <= fast_change * rounding) ||
-         (moved <= 1e-10 * size && shrunk >= 0.5);
-}
-
 /* Look for a point within the step where the rank drops, which changes the sign of
  * det(G1 M^-1 G0^T). A kept matrix is tested only if it is nearly singular, and small. */
 static dvi_status check_passage(dvi__rattle *r, const dvi__state *state, double h, int renewed)
 {
   enum { ROWS_MOST = 64 };
-  const double suspicious = 1e-2;
   const int look = r->system->row_count <= ROWS_MOST &&
-                   dvi__linear_condition(r->matrix) < suspicious;
+                   dvi__linear_condition(r->matrix) < DVI__RATTLE_SUSPICIOUS;
   if (!renewed && !look) return DVI_OK;
   DVI_TRY(value_at_end(r, state, h));
   if (!renewed) DVI_TRY(renew_matrix(r, state, h));
@@ -391,23 +380,23 @@ static dvi_status find_multipliers(dvi__rattle *r, const dvi__state *state, doub
   const double size = fmax(dvi__largest(n, state->q), dvi__largest(n, r->change));
   double moved = HUGE_VAL, last = HUGE_VAL;
   int renewed = 0;
-  for (int iteration = 0; iteration < MOST_ITERATIONS; iteration++) {
+  for (int iteration = 0; iteration < DVI__RATTLE_ITERATIONS; iteration++) {
     DVI_TRY(value_at_end(r, state, h));
     r->softness = fmax(fmin(moved / size, 1e-2), DVI__SOFTNESS);
-    if (r->dependent || (iteration > 1 && !(moved <= fast_change * last))) {
+    if (r->dependent || (iteration > 1 && !(moved <= DVI__RATTLE_FAST_CHANGE * last))) {
       DVI_TRY(renew_matrix(r, state, h));
       renewed = 1;
     }
     last = moved;
     DVI_TRY(correct(r, h, lambda, &moved));
-    if (!is_settled(moved, last, size)) continue;
+    if (!dvi__rattle_is_settled(moved, last, size)) continue;
     DVI_TRY(check_passage(r, state, h, renewed));
     *(renewed ? &r->counters->newtons : &r->counters->simplified) += 1;
     return DVI_OK;
   }
   return dvi__fail(DVI_NOT_CONVERGED,
                    "the multipliers of the step do not settle in %d iterations (change %.1e)",
-                   (int)MOST_ITERATIONS, moved);
+                   (int)DVI__RATTLE_ITERATIONS, moved);
 }
 
 /* The multipliers of a step's start differ from those at its end, and these from those of the next
@@ -488,11 +477,10 @@ static void note_end(const dvi__rattle *r, double h, double *lambda, double *tre
   }
 }
 
-/* Find mu [rows] from its guess. What a correction leaves is of the size of its own roundings,
- * unless the matrix is that of dependent rows. A large one is corrected once more. */
+/* Find mu [rows] from its guess. A large correction, or one by the matrix of dependent rows, is
+ * corrected once more. */
 static dvi_status find_end(dvi__rattle *r, dvi__state *state)
 {
-  const double small_change = 1e-3;
   double changed;
   r->dependent = state->side > 1;
   const dvi_status status = factor_at(r, state->t, state->q);
@@ -501,7 +489,7 @@ static dvi_status find_end(dvi__rattle *r, dvi__state *state)
     return dvi__fail_in(status == DVI_SINGULAR ? DVI_NOT_CONVERGED : status, "the end of the step");
   DVI_TRY(dvi__rows_rate(r->evaluator, state->t, state->q, r->phi_t));
   DVI_TRY(correct_end(r, state, &changed));
-  if (changed > small_change || r->dependent) DVI_TRY(correct_end(r, state, &changed));
+  if (changed > DVI__RATTLE_SMALL_CHANGE || r->dependent) DVI_TRY(correct_end(r, state, &changed));
   memset(r->x, 0, (size_t)r->system->n * sizeof(double));
   dvi__rows_pull(r->system, r->phi_q, r->mu, -1, r->x);
   dvi__add_compensated_all(r->system->n, state->p, state->p_compensation, r->x);

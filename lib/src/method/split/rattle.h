@@ -14,6 +14,7 @@
 #ifndef DVI_METHOD_SPLIT_RATTLE_H
 #define DVI_METHOD_SPLIT_RATTLE_H
 #include "method/method.h"
+#include "step/split/rattle_members.h"
 
 typedef struct dvi__rattle dvi__rattle;
 
@@ -24,6 +25,10 @@ enum { DVI__RATTLE_TREND = 2 };
 dvi_status dvi__rattle_create(const dvi_system *system, dvi__evaluator *evaluator,
                               dvi_counters *counters, dvi__rattle **rattle);
 void dvi__rattle_destroy(dvi__rattle **rattle);
+
+/* Tell whether the mass is positive, and on the diagonal, and give the matrix of independent
+ * rows. */
+int dvi__rattle_has_matrix(const dvi__rattle *rattle, dvi__rattle_matrix *matrix);
 
 /* Add - h/2 G^T lambda to the momentum of a state at (t0, q0), after its first kick. lambda [rows]
  * are the last multipliers, trend [DVI__RATTLE_TREND rows] is NULL if steps do not follow each

@@ -42,8 +42,8 @@ static const dvi__key keys[] = {
 };
 
 /* The memory holds the gradient at the end of the last step, which is that at the start of the
- * next, and then a flag, and then the multipliers of holonomic constraints, or the friction, from
- * which those of the next step are sought. */
+ * next, and then a flag, and then the multipliers of holonomic constraints, from which those of the
+ * next step are sought. */
 typedef struct verlet {
   dvi__evaluator *evaluator;
   /* [2 n] a change, and forces; NULL if each coordinate moves alone, by its momentum divided by its
@@ -60,11 +60,6 @@ typedef struct verlet {
 static double *verlet_gradient_known(const dvi__stepper *self, double *memory)
 {
   return memory + self->system->n;
-}
-
-static double *verlet_friction(const dvi__stepper *self)
-{
-  return self->memory + self->system->n + 1;
 }
 
 static double *verlet_multipliers(const dvi__stepper *self)
@@ -132,7 +127,6 @@ static dvi_status verlet_create(dvi__stepper *self)
   self->stable = 2; /* a motion turns by theta in a step, cos(theta) = 1 - (h omega)^2/2 */
   self->memory_count = (size_t)self->system->n + 1 +
                        (1 + DVI__RATTLE_TREND) * (size_t)self->system->row_count;
-  if (self->system->terms & DVI__FRICTION) self->memory_count += dvi__friction_memory(self->system);
   if (own == NULL) return dvi__fail(DVI_NO_MEMORY, "verlet: no memory");
   DVI_TRY(allocate_numbers(self->system, own));
   DVI_TRY(create_blocking(self, own));
@@ -200,7 +194,7 @@ static dvi_status verlet_supply(const dvi__stepper *self, dvi__state *state, dou
   double *F = own->change + self->system->n;
   if (state->supplied == NULL) return DVI_OK;
   if (own->friction != NULL)
-    v = dvi__friction_velocity(own->friction, verlet_friction(self));
+    v = dvi__friction_velocity(own->friction);
   else
     dvi__mass_solve(own->evaluator, 1, state->p, own->change);
   DVI_TRY(dvi__forces(own->evaluator, DVI__FORCES, 1, &state->t, state->q, v, F));
@@ -212,15 +206,15 @@ static dvi_status verlet_supply(const dvi__stepper *self, dvi__state *state, dou
 
 static void add_friction(const dvi__stepper *self, dvi__state *state, double h)
 {
-  dvi__lanes_add_scaled((size_t)self->system->n, h, verlet_friction(self), state->p,
+  const verlet *own = self->own;
+  dvi__lanes_add_scaled((size_t)self->system->n, h, dvi__friction_force(own->friction), state->p,
                         state->p_compensation);
 }
 
 static dvi_status verlet_begin(dvi__stepper *self, dvi__state *state, double h)
 {
   const verlet *own = self->own;
-  if (own->friction != NULL)
-    DVI_TRY(dvi__friction_solve(own->friction, state, h, self->memory, verlet_friction(self)));
+  if (own->friction != NULL) DVI_TRY(dvi__friction_solve(own->friction, state, h, self->memory));
   verlet_kick(self, state, 0.5 * h);
   if (own->friction != NULL) add_friction(self, state, 0.5 * h);
   if (own->rattle == NULL) return DVI_OK;
@@ -235,7 +229,7 @@ static dvi_status verlet_end(dvi__stepper *self, dvi__state *state, double h)
   if (own->rattle != NULL)
     return dvi__rattle_end(own->rattle, state, h, verlet_multipliers(self), verlet_trend(self));
   if (own->friction == NULL) return DVI_OK;
-  DVI_TRY(dvi__friction_end(own->friction, state, verlet_friction(self)));
+  DVI_TRY(dvi__friction_end(own->friction, state));
   add_friction(self, state, 0.5 * h);
   return DVI_OK;
 }
@@ -250,17 +244,9 @@ static dvi_status verlet_forced_step(dvi__stepper *self, dvi__state *state, doub
   return verlet_end(self, state, h);
 }
 
-static dvi_status verlet_first(dvi__stepper *self, const dvi__state *state)
-{
-  const verlet *own = self->own;
-  DVI_TRY(verlet_gradient(self, state));
-  return own->friction != NULL ? dvi__friction_start(own->friction, state, verlet_friction(self))
-                               : DVI_OK;
-}
-
 static dvi_status verlet_step(dvi__stepper *self, dvi__state *state, double h)
 {
-  if (*verlet_gradient_known(self, self->memory) == 0) DVI_TRY(verlet_first(self, state));
+  if (*verlet_gradient_known(self, self->memory) == 0) DVI_TRY(verlet_gradient(self, state));
   if (self->system->force_count > 0 || self->system->row_count > 0)
     return verlet_forced_step(self, state, h);
   if (((const verlet *)self->own)->change == NULL) {
@@ -348,9 +334,9 @@ static dvi_status verlet_prepare_lanes(dvi__stepper *self, int capacity)
   const verlet *own = self->own;
   const int asked = self->settings.value[BLOCKING] == BLOCKING_TEMPORAL ||
                     self->settings.value[THREADS] > 1;
-  const int pays = own->friction == NULL && own->rattle == NULL &&
+  const int pays = own->friction == NULL &&
                    (own->blocking == NULL || (!asked && self->system->n <= FEW_COORDINATES));
-  return pays ? dvi__verlet_prepare_lanes(self, capacity) : DVI_OK;
+  return pays ? dvi__verlet_prepare_lanes(self, own->rattle, capacity) : DVI_OK;
 }
 
 static void verlet_explain(const dvi__stepper *self, dvi__text *text)

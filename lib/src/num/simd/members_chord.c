@@ -96,21 +96,29 @@ INLINE void larger_magnitudes(size_t width, const double *restrict x, double *re
   }
 }
 
-INLINE void correct(const dvi__members_chord *c)
+INLINE void subtract(const dvi__members_chord *c)
 {
   const size_t width = (size_t)c->width;
   memset(c->change, 0, width * sizeof(double));
   memset(c->largest, 0, width * sizeof(double));
   for (size_t row = 0; row < (size_t)c->n * (size_t)c->s; row++) {
-    const double *restrict from = c->rows + row * width;
-    double *restrict R = c->R + row * width, *restrict Y = c->Y + row * width;
-    for (size_t k = 0; k < width; k++) R[k] = c->h * from[k];
+    const double *restrict R = c->R + row * width;
+    double *restrict Y = c->Y + row * width;
     for (size_t k = 0; k < width; k++) Y[k] -= R[k];
     larger_magnitudes(width, R, c->change);
     larger_magnitudes(width, Y, c->largest);
   }
   for (size_t k = 0; k < width; k++)
     if (isnan(c->largest[k])) c->change[k] = HUGE_VAL;
+}
+
+INLINE void correct(const dvi__members_chord *c)
+{
+  const size_t numbers = (size_t)c->n * (size_t)c->s * (size_t)c->width;
+  const double *restrict from = c->rows;
+  double *restrict R = c->R;
+  for (size_t i = 0; i < numbers; i++) R[i] = c->h * from[i];
+  subtract(c);
 }
 
 BY(2)
@@ -190,6 +198,7 @@ typedef struct level {
   void (*invert)(const dvi__members_chord *c);
   void (*inverse)(size_t n, size_t width, double *A, double *largest, char *sound);
   void (*correct)(const dvi__members_chord *c);
+  void (*subtract)(const dvi__members_chord *c);
 } level;
 
 #define LEVEL(suffix, target, by)                                                         \
@@ -213,6 +222,10 @@ typedef struct level {
   target static void correct_##suffix(const dvi__members_chord *c)                        \
   {                                                                                       \
     correct_by##by(c);                                                                    \
+  }                                                                                       \
+  target static void subtract_##suffix(const dvi__members_chord *c)                       \
+  {                                                                                       \
+    subtract(c);                                                                          \
   }
 
 LEVEL(baseline, , 2)
@@ -223,10 +236,12 @@ LEVEL(avx512, __attribute__((target("fma,avx512f,avx512dq,avx512vl"))), 8)
 
 /* Levels in the order of num/simd/lanes.c. */
 static const level levels[] = {
-    {stages_baseline, residual_baseline, invert_baseline, inverse_baseline, correct_baseline},
+    {stages_baseline, residual_baseline, invert_baseline, inverse_baseline, correct_baseline,
+     subtract_baseline},
 #ifdef __x86_64__
-    {stages_avx2, residual_avx2, invert_avx2, inverse_avx2, correct_avx2},
-    {stages_avx512, residual_avx512, invert_avx512, inverse_avx512, correct_avx512},
+    {stages_avx2, residual_avx2, invert_avx2, inverse_avx2, correct_avx2, subtract_avx2},
+    {stages_avx512, residual_avx512, invert_avx512, inverse_avx512, correct_avx512,
+     subtract_avx512},
 #endif
 };
 
@@ -258,4 +273,9 @@ void dvi__members_inverse(int n, int width, double *matrix, double *largest, cha
 void dvi__members_chord_correct(const dvi__members_chord *chord)
 {
   level_in_use()->correct(chord);
+}
+
+void dvi__members_chord_subtract(const dvi__members_chord *chord)
+{
+  level_in_use()->subtract(chord);
 }

@@ -40,4 +40,7 @@ void dvi__members_inverse(int n, int width, double *matrix, double *largest, cha
  * number. */
 void dvi__members_chord_correct(const dvi__members_chord *chord);
 
+/* Correct Y alone, by the correction R. */
+void dvi__members_chord_subtract(const dvi__members_chord *chord);
+
 #endif

@@ -1,59 +1,70 @@
 #include "num/simd/small_inverse.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
 #include "num/simd/wide.h"
 #include "num/simd/width.h"
 
-enum { BLOCK = 4, MOST = DVI__SMALL_INVERSE_MOST };
+enum { BLOCK = 4, MOST = DVI__SMALL_INVERSE_MOST, MOST_NEAR_ONE = DVI__NEAR_ONE_MOST };
 
 /* Pivots of a matrix near 1 are near 1. */
 static const double least_pivot = 1.0 / 16, largest_pivot = 16;
 
 typedef double block __attribute__((vector_size(BLOCK * sizeof(double)), aligned(8), may_alias));
 
-static void exchange_columns(int n, double *x, double *y)
+static void exchange(int count, int stride, double *a, double *b)
 {
-  for (int i = 0; i < n; i++) {
-    const double kept = x[i];
-    x[i] = y[i];
-    y[i] = kept;
+  for (int i = 0; i < count * stride; i += stride) {
+    const double kept = a[i];
+    a[i] = b[i];
+    b[i] = kept;
   }
 }
 
-/* Subtract a multiple of a column. */
-INLINE void subtract_multiple(int n, double factor, const double *x, double *y)
+static int largest_row(int n, const double *column, int from)
 {
-  int i = 0;
-  for (; i + BLOCK <= n; i += BLOCK) *(block *)(y + i) -= factor * *(const block *)(x + i);
-  for (; i < n; i++) y[i] -= factor * x[i];
+  int row = from;
+  for (int i = from + 1; i < n; i++)
+    if (fabs(column[i]) > fabs(column[row])) row = i;
+  return row;
+}
+
+INLINE void subtract_multiple(int n, double factor, const double *restrict x, double *restrict y)
+{
+  for (int i = 0; i < n; i++) y[i] -= x[i] * factor;
+}
+
+/* Take column k out of all others, and replace it by that of the inverse. */
+INLINE void eliminate_column(int n, int k, double *A)
+{
+  double *column = A + k * n;
+  const double inverse = 1 / column[k];
+  for (int j = 0; j < n; j++) {
+    double *other = A + j * n;
+    const double factor = other[k] * inverse;
+    if (j == k) continue;
+    subtract_multiple(n, factor, column, other);
+    other[k] = factor;
+  }
+  for (int i = 0; i < n; i++) column[i] *= -inverse;
+  column[k] = inverse;
 }
 
 WIDE static int small_invert(int n, double *A)
 {
   int from[MOST], sign = 1;
   for (int k = 0; k < n; k++) {
-    double *column = A + k * n;
-    from[k] = k;
-    for (int j = k + 1; j < n; j++)
-      if (fabs(A[j * n + k]) > fabs(A[from[k] * n + k])) from[k] = j;
-    if (from[k] != k) exchange_columns(n, column, A + from[k] * n);
-    const double pivot = column[k], by = 1 / pivot;
-    if (!(fabs(pivot) > 0)) return 0;
-    if ((from[k] != k) ^ (pivot < 0)) sign = -sign;
-    column[k] = 1;
-    for (int i = 0; i < n; i++) column[i] *= by;
-    for (int j = 0; j < n; j++) {
-      const double factor = A[j * n + k];
-      if (j == k) continue;
-      A[j * n + k] = 0;
-      subtract_multiple(n, factor, column, A + j * n);
-    }
+    const int row = from[k] = largest_row(n, A + k * n, k);
+    if (row != k) exchange(n, n, A + k, A + row);
+    const double pivot = A[k * n + k];
+    if (!(fabs(pivot) >= DBL_MIN) || isinf(pivot)) return 0;
+    if ((row != k) ^ (pivot < 0)) sign = -sign;
+    eliminate_column(n, k, A);
   }
-  for (int k = n - 1; k >= 0; k--)
-    for (int j = 0; j < n && from[k] != k; j++)
-      exchange_columns(1, &A[j * n + k], &A[j * n + from[k]]);
+  for (int k = n; k-- > 0;)
+    if (from[k] != k) exchange(n, 1, A + k * n, A + from[k] * n);
   return sign;
 }
 
@@ -147,7 +158,7 @@ WIDE static int near_one_invert(int n, double *A)
   case 5: return invert_near_one(n, 5, A);
   case 6: return invert_near_one(n, 6, A);
   case 7: return invert_near_one(n, 7, A);
-  default: return invert_near_one(n, MOST / BLOCK, A);
+  default: return invert_near_one(n, MOST_NEAR_ONE / BLOCK, A);
   }
 }
 
@@ -159,7 +170,7 @@ int dvi__near_one_invert(int n, double *A)
 WIDE static void near_one_times(int n, const double *inverse, double *x)
 {
   const int stride = dvi__near_one_stride(n);
-  double y[MOST];
+  double y[MOST_NEAR_ONE];
   for (int at = 0; at < stride; at += BLOCK) {
     block sum = {0};
     for (int k = 0; k < n; k++) sum += x[k] * *(const block *)(inverse + k * stride + at);
@@ -171,4 +182,58 @@ WIDE static void near_one_times(int n, const double *inverse, double *x)
 void dvi__near_one_times(int n, const double *inverse, double *x)
 {
   near_one_times(n, inverse, x);
+}
+
+/* ---- of several members ---- */
+
+/* The sums with 0 are those of divide_column, by which a zero may lose its sign. */
+INLINE void divide_abreast(int n, int k, dvi__abreast *column, int *regular)
+{
+  const int first = k / BLOCK * BLOCK, end = first + BLOCK < n ? first + BLOCK : n;
+  const dvi__abreast pivot = column[k], by = 1 / pivot;
+  for (int lane = 0; lane < DVI__ABREAST; lane++)
+    regular[lane] &= (pivot[lane] > least_pivot) & (pivot[lane] < largest_pivot);
+  for (int i = 0; i < n; i++) column[i] *= by;
+  for (int i = first; i < end; i++) column[i] += by * (i == k ? 1.0 : 0.0);
+}
+
+INLINE void subtract_abreast(int n, const dvi__abreast *x, dvi__abreast factor, dvi__abreast *y)
+{
+  for (int i = 0; i < n; i++) y[i] -= factor * x[i];
+}
+
+/* Eliminate two rows from two columns in one pass, which loads the divided columns once. */
+INLINE void eliminate_from_pair(int n, int k, const dvi__abreast *one, const dvi__abreast *two,
+                                dvi__abreast *y)
+{
+  const dvi__abreast both = one[k + 1], *z = y + n, y_one = y[k], z_one = z[k],
+                     y_two = y[k + 1] - y_one * both, z_two = z[k + 1] - z_one * both;
+  for (int i = 0; i < n; i++) {
+    y[i] = (y[i] - y_one * one[i]) - y_two * two[i];
+    y[n + i] = (z[i] - z_one * one[i]) - z_two * two[i];
+  }
+}
+
+INLINE void eliminate_two_abreast(int n, int k, dvi__abreast *A, int *regular)
+{
+  dvi__abreast *one = A + k * n, *two = one + n;
+  divide_abreast(n, k, one, regular);
+  subtract_abreast(n, one, two[k], two);
+  divide_abreast(n, k + 1, two, regular);
+  const dvi__abreast both = one[k + 1];
+  for (int j = 0; j < n; j += 2)
+    if (j != k) eliminate_from_pair(n, k, one, two, A + j * n);
+  one[k] -= 1;
+  subtract_abreast(n, two, both, one);
+  two[k + 1] -= 1;
+}
+
+WIDE static void near_one_invert_abreast(int n, dvi__abreast *A, int *regular)
+{
+  for (int k = 0; k < n; k += 2) eliminate_two_abreast(n, k, A, regular);
+}
+
+void dvi__near_one_invert_abreast(int n, dvi__abreast *A, int regular[DVI__ABREAST])
+{
+  near_one_invert_abreast(n, A, regular);
 }

@@ -173,7 +173,7 @@ static int dg_inverse_allocate(const dvi__discontinuous *e, dvi__dg_inverse *mad
 
 dvi_status dvi__discontinuous_create_inverse(dvi__discontinuous *e)
 {
-  if (e->n > DVI__SMALL_INVERSE_MOST / e->S) return DVI_OK;
+  if (e->n > DVI__NEAR_ONE_MOST / e->S) return DVI_OK;
   e->inverse = DVI_NEW(dvi__dg_inverse, 1);
   if (e->inverse == NULL || !dg_inverse_allocate(e, e->inverse))
     return dvi__fail(DVI_NO_MEMORY, "dg: no memory for the inverse of degree %d", e->S - 1);
@@ -253,7 +253,7 @@ INLINE void turn_rows(const dvi__discontinuous *e, const double *rows, const int
 
 INLINE void write_column(const dvi__discontinuous *e, int j, int l, const int lanes, double *column)
 {
-  double rows[DVI__SMALL_INVERSE_MOST * MOST];
+  double rows[DVI__NEAR_ONE_MOST * MOST];
   for (int i = 0; i < e->n; i++)
     write_rows(e, e->inverse->block + j * e->n + i, l, lanes, rows + i * MOST);
   turn_rows(e, rows, lanes, column);
@@ -283,7 +283,7 @@ dvi_status dvi__discontinuous_invert(dvi__discontinuous *e, const double *x, int
 /* Multiply r by both factors. */
 WIDE static void turn_right_side(const dvi__discontinuous *e, const double *r, double *turned)
 {
-  double rows[DVI__SMALL_INVERSE_MOST * MOST];
+  double rows[DVI__NEAR_ONE_MOST * MOST];
   for (int i = 0; i < e->n; i++) {
     double sum[MOST] = {0};
     for (int k = 0; k < e->S; k++)
@@ -295,7 +295,7 @@ WIDE static void turn_right_side(const dvi__discontinuous *e, const double *r, d
 
 void dvi__discontinuous_correct(dvi__discontinuous *e, double *r)
 {
-  double turned[DVI__SMALL_INVERSE_MOST + MOST];
+  double turned[DVI__NEAR_ONE_MOST + MOST];
   turn_right_side(e, r, turned);
   dvi__near_one_times(e->n * e->S, e->inverse->inverse, turned);
   memcpy(r, turned, (size_t)(e->n * e->S) * sizeof *r);

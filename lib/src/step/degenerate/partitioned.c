@@ -285,11 +285,16 @@ void dvi__partitioned_straight(const dvi__partitioned *p, const double *v, doubl
   }
 }
 
-void dvi__partitioned_continue(dvi__partitioned *p, double ratio, const double *last, double *x)
+void dvi__partitioned_shift(dvi__partitioned *p, double ratio)
 {
   for (int k = 0; k < p->s && ratio != p->ratio; k++)
     dvi__lagrange_weights(p->s, p->c, 1 + ratio * p->c[k], p->shift[k]);
   p->ratio = ratio;
+}
+
+void dvi__partitioned_continue(dvi__partitioned *p, double ratio, const double *last, double *x)
+{
+  dvi__partitioned_shift(p, ratio);
   for (int i = 0; i < p->n; i++, last += p->m, x += p->m) {
     for (int k = 0; k < p->s; k++) x[k] = ratio * partitioned_dot(p->s, p->shift[k], last);
     if (p->kick.has_multiplier) x[p->s] = 0;

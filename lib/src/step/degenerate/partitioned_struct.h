@@ -50,6 +50,9 @@ static inline double partitioned_dot(int count, const double *x, const double *y
 /* Compute the points at x. */
 void dvi__partitioned_points(dvi__partitioned *p, const double *x);
 
+/* Make the weights that continue velocities by this ratio of lengths, unless they are there. */
+void dvi__partitioned_shift(dvi__partitioned *p, double ratio);
+
 /* Create the inverse, if it can serve (partitioned_jacobian.c). */
 dvi_status dvi__partitioned_create_inverse(dvi__partitioned *p);
 

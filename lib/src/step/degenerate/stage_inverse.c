@@ -1,4 +1,4 @@
-#include "step/degenerate/stage_inverse.h"
+#include "step/degenerate/stage_inverse_struct.h"
 
 #include <string.h>
 
@@ -8,22 +8,9 @@
 #include "num/simd/wide.h"
 #include "num/simd/width.h"
 
-enum { LANES = DVI__STAGE_LANES, BLOCK = 4, MOST_UNKNOWNS = DVI__SMALL_INVERSE_MOST };
+enum { LANES = DVI__STAGE_LANES, BLOCK = 4, MOST_UNKNOWNS = DVI__NEAR_ONE_MOST };
 
 typedef double block __attribute__((vector_size(BLOCK * sizeof(double)), aligned(8), may_alias));
-
-struct dvi__stage_inverse {
-  int n, m, has_end, unknowns, stride;            /* a column has `stride` numbers, whole blocks */
-  double moved[LANES][LANES], back[LANES][LANES]; /* G and G^-1 by columns */
-  double sign[LANES];
-  double path[LANES][LANES][LANES];               /* column l of G^-1 times row r of G, as [l][r] */
-  double unit[LANES][LANES], inner[LANES][LANES]; /* the matrix 1 and G, without rows of the end */
-  double of_start[LANES], of_end[LANES];          /* G^-1 of 1 in all rows, and in the last one */
-  double path_of_start[LANES][LANES], path_of_end[LANES][LANES]; /* the same times -G's last row */
-  dvi__stage_entry *given, *turned; /* [n*n] by columns: entries, and -Omega^-1 times them */
-  double *Omega;                    /* [n*n] -Omega^-1 by columns */
-  double *inverse;                  /* [stride*unknowns + LANES] by columns */
-};
 
 /* ---- create ---- */
 

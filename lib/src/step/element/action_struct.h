@@ -287,4 +287,27 @@ void dvi__action_clear_two_point(const dvi__action *action);
 /* Fill the batches Q and V with the path's points at the nodes. */
 void dvi__action_stages(const dvi__action *action, const double *Y);
 
+/* Give an entry of a Hessian at one point, 0 where its pattern has none. */
+static inline double dvi__entry_or_zero(const double *H, int place)
+{
+  return place >= 0 ? H[place] : 0.0;
+}
+
+/* The n systems of decoupled.h of a time-transformed system whose own Hessian is sparse
+ * (transformed.c). *rank_two is NULL for all others, and where full matrices are as fast. */
+typedef struct dvi__rank_two dvi__rank_two;
+
+dvi_status dvi__rank_two_create(const dvi_system *system, dvi__rank_two **rank_two);
+void dvi__rank_two_destroy(dvi__rank_two **rank_two);
+
+/* Give the pattern, which has two rows and columns more than there are coordinates. */
+const dvi__pattern *dvi__rank_two_pattern(const dvi__rank_two *rank_two);
+
+/* Evaluate the Hessian at one place, for the systems of U, T and h, real (parts = 1) or complex
+ * (2). */
+dvi_status dvi__rank_two_evaluate(dvi__rank_two *rank_two, double t, const double *q,
+                                  const double *w);
+void dvi__rank_two_assemble(const dvi__rank_two *rank_two, double h, int parts, const double *U,
+                            const double *T, double *values);
+
 #endif

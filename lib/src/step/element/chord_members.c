@@ -93,14 +93,19 @@ void dvi__chord_members_clear(dvi__action_members *m)
 
 /* ---- begin ---- */
 
-/* Continue the last paths, which are kept in m->forces, as dvi__action_continue. */
+void dvi__action_continue_members(dvi__action *a, double ratio, int width, const double *last,
+                                  double *Y)
+{
+  dvi__members_product(a->n, a->s, a->path_lanes, a->s, dvi__action_path_shift(a, ratio), width,
+                       last, Y);
+}
+
+/* Continue the last paths, which are kept in m->forces. */
 void dvi__chord_members_place(dvi__action_members *m, double ratio)
 {
-  dvi__action *a = m->action;
   m->start = m->p;
   m->chord->is_prepared = 0;
-  dvi__members_product(a->n, a->s, a->path_lanes, a->s, dvi__action_path_shift(a, ratio), m->width,
-                       m->forces, m->chord->Y);
+  dvi__action_continue_members(m->action, ratio, m->width, m->forces, m->chord->Y);
 }
 
 void dvi__chord_members_pack(dvi__action_members *m, int before)
@@ -173,25 +178,28 @@ static dvi_status prepare_masses(const dvi__action_members *m)
 
 /* ---- iterations ---- */
 
+void dvi__action_members_tables(const dvi__action *a, dvi__members_chord *loops)
+{
+  loops->n = a->n;
+  loops->s = a->s;
+  loops->r = a->r;
+  loops->h = a->h;
+  loops->inverse_h = 1.0 / a->h;
+  loops->lanes = a->lanes;
+  loops->path_lanes = a->path_lanes;
+  loops->psi = a->psi;
+  loops->dpsi = a->dpsi;
+  loops->bar_row = a->bar_row;
+  loops->slope_row = a->slope_row;
+  loops->stiffness_row = a->stiffness_row;
+  loops->weight = a->weight;
+  loops->end = a->end;
+}
+
 static dvi__members_chord loops_of(const dvi__action_members *m)
 {
-  const dvi__action *a = m->action;
   const struct dvi__chord_members *c = m->chord;
-  return (dvi__members_chord){.n = a->n,
-                              .s = a->s,
-                              .r = a->r,
-                              .width = m->width,
-                              .h = a->h,
-                              .inverse_h = 1.0 / a->h,
-                              .lanes = a->lanes,
-                              .path_lanes = a->path_lanes,
-                              .psi = a->psi,
-                              .dpsi = a->dpsi,
-                              .bar_row = a->bar_row,
-                              .slope_row = a->slope_row,
-                              .stiffness_row = a->stiffness_row,
-                              .weight = a->weight,
-                              .end = a->end,
+  dvi__members_chord loops = {.width = m->width,
                               .q0 = m->origin,
                               .p0 = m->start,
                               .Y = c->Y,
@@ -204,6 +212,8 @@ static dvi__members_chord loops_of(const dvi__action_members *m)
                               .inverse = c->mass.inverse,
                               .change = m->change,
                               .largest = m->largest};
+  dvi__action_members_tables(m->action, &loops);
+  return loops;
 }
 
 dvi_status dvi__chord_members_iterate(dvi__action_members *m)

@@ -20,8 +20,9 @@ struct dvi__decoupled {
   dvi_counters *counters;
   int modes;
   mode mode[DVI_DEGREE_MAX];
+  dvi__rank_two *rank_two;          /* NULL if the systems have the Hessian's joint pattern */
   double *in, *out;                 /* [s*lanes] by columns, X^{-1} K^{-1} and X */
-  double *values, *b, *coefficient; /* [2 entries], [2 n], [n*s], NULL if not prepared */
+  double *values, *b, *coefficient; /* [2 entries], [2 rows], [n*s], NULL if not prepared */
   double h, *point;                 /* step of the frozen Jacobian (0 if none), and its t, q, v */
 };
 
@@ -120,6 +121,7 @@ dvi_status dvi__decoupled_create(dvi__action *action, dvi_counters *counters,
     status = decoupled_allocate_tables(d);
   }
   if (status == DVI_OK) status = decoupled_fill_tables(d, w);
+  if (status == DVI_OK) status = dvi__rank_two_create(action->system, &d->rank_two);
   dvi__release(w);
   if (status != DVI_OK && d != NULL) dvi__decoupled_destroy(&d);
   *decoupled = d;
@@ -132,6 +134,7 @@ void dvi__decoupled_destroy(dvi__decoupled **decoupled)
   if (d == NULL) return;
   /* the first one shares its analysis and goes last */
   for (int m = d->modes - 1; m >= 0; m--) dvi__linear_destroy(&d->mode[m].linear);
+  dvi__rank_two_destroy(&d->rank_two);
   dvi__release(d->in);
   dvi__release(d->out);
   dvi__release(d->values);
@@ -144,11 +147,21 @@ void dvi__decoupled_destroy(dvi__decoupled **decoupled)
 
 /* ---- prepare ---- */
 
+static const dvi__pattern *systems_pattern(const dvi__decoupled *d)
+{
+  return d->rank_two != NULL ? dvi__rank_two_pattern(d->rank_two) : &d->action->joint;
+}
+
+static dvi_status prepare_pattern(dvi__decoupled *d)
+{
+  return d->rank_two != NULL ? DVI_OK : dvi__action_prepare_hessians(d->action);
+}
+
 static dvi_status mode_create_linear(dvi__decoupled *d, mode *m)
 {
   const dvi__linear_kind kind = m->parts == 2 ? DVI__LINEAR_COMPLEX : DVI__LINEAR_SPARSE;
   if (m->linear != NULL) return DVI_OK;
-  if (m == d->mode) return dvi__linear_create(&d->action->joint, kind, d->counters, &m->linear);
+  if (m == d->mode) return dvi__linear_create(systems_pattern(d), kind, d->counters, &m->linear);
   return dvi__linear_create_like(d->mode[0].linear, kind, d->counters, &m->linear);
 }
 
@@ -156,12 +169,12 @@ static dvi_status mode_create_linear(dvi__decoupled *d, mode *m)
 static dvi_status prepare_modes(dvi__decoupled *d)
 {
   const dvi__action *a = d->action;
-  const size_t n = (size_t)a->n;
-  DVI_TRY(dvi__action_prepare_hessians(d->action));
+  const dvi__pattern *pattern = systems_pattern(d);
+  DVI_TRY(prepare_pattern(d));
   for (int m = 0; m < d->modes; m++) DVI_TRY(mode_create_linear(d, &d->mode[m]));
-  if (d->values == NULL) d->values = DVI_NEW(double, 2 * (size_t)dvi__pattern_entries(&a->joint));
-  if (d->b == NULL) d->b = DVI_NEW(double, 2 * n);
-  if (d->coefficient == NULL) d->coefficient = DVI_NEW(double, n *(size_t)a->s);
+  if (d->values == NULL) d->values = DVI_NEW(double, 2 * (size_t)dvi__pattern_entries(pattern));
+  if (d->b == NULL) d->b = DVI_NEW(double, 2 * (size_t)pattern->columns);
+  if (d->coefficient == NULL) d->coefficient = DVI_NEW(double, (size_t)a->n *(size_t)a->s);
   if (d->values && d->b && d->coefficient) return DVI_OK;
   return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d decoupled systems in %d dimensions",
                    a->s, a->n);
@@ -169,7 +182,7 @@ static dvi_status prepare_modes(dvi__decoupled *d)
 
 dvi_status dvi__decoupled_analyse(dvi__decoupled *d, dvi__linear_cost *cost)
 {
-  DVI_TRY(dvi__action_prepare_hessians(d->action));
+  DVI_TRY(prepare_pattern(d));
   DVI_TRY(mode_create_linear(d, &d->mode[0]));
   DVI_TRY(dvi__linear_analyse(d->mode[0].linear));
   const dvi__linear_cost first = dvi__linear_cost_of(d->mode[0].linear);
@@ -183,6 +196,11 @@ dvi_status dvi__decoupled_analyse(dvi__decoupled *d, dvi__linear_cost *cost)
   return DVI_OK;
 }
 
+int dvi__decoupled_has_rank_two(const dvi__decoupled *d)
+{
+  return d->rank_two != NULL;
+}
+
 double dvi__decoupled_weight(const dvi__decoupled *d)
 {
   double weight = 0;
@@ -192,23 +210,19 @@ double dvi__decoupled_weight(const dvi__decoupled *d)
 
 /* ---- factors ---- */
 
-static double entry_or_zero(const double *H, int place)
-{
-  return place >= 0 ? H[place] : 0.0;
-}
-
 /* Assemble h U (L_qq + F_q) + T (L_vq - L_qv - F_v) + L_vv/h on the joint pattern. */
 static void mode_assemble(const dvi__action *a, const mode *m, double *values)
 {
   for (int e = 0, at = 0; e < dvi__pattern_entries(&a->joint); e++) {
     const dvi__joint_entry *block = &a->block[e];
-    const double qq = a->h *
-                      (entry_or_zero(a->H_qq, block->qq) + entry_or_zero(a->F_q, block->by_q)),
-                 mixed = entry_or_zero(a->H_qv, block->vq) - entry_or_zero(a->H_qv, block->qv) -
-                         entry_or_zero(a->F_v, block->by_v);
+    const double qq = a->h * (dvi__entry_or_zero(a->H_qq, block->qq) +
+                              dvi__entry_or_zero(a->F_q, block->by_q)),
+                 mixed = dvi__entry_or_zero(a->H_qv, block->vq) -
+                         dvi__entry_or_zero(a->H_qv, block->qv) -
+                         dvi__entry_or_zero(a->F_v, block->by_v);
     for (int part = 0; part < m->parts; part++, at++)
       values[at] = m->U[part] * qq + m->T[part] * mixed +
-                   (part == 0 ? entry_or_zero(a->H_vv, block->vv) / a->h : 0.0);
+                   (part == 0 ? dvi__entry_or_zero(a->H_vv, block->vv) / a->h : 0.0);
   }
 }
 
@@ -232,10 +246,15 @@ static dvi_status decoupled_factor(dvi__decoupled *d)
   const double *q = d->point + 1, *v = q + a->n;
   DVI_TRY(prepare_modes(d));
   d->counters->jacobians++;
-  DVI_TRY(dvi__action_evaluate_hessians(a, 1, d->point, q, v));
-  for (int m = 0; m < d->modes; m++) {
-    mode_assemble(a, &d->mode[m], d->values);
-    DVI_TRY(dvi__linear_factor(d->mode[m].linear, d->values));
+  DVI_TRY(d->rank_two != NULL ? dvi__rank_two_evaluate(d->rank_two, d->point[0], q, v)
+                              : dvi__action_evaluate_hessians(a, 1, d->point, q, v));
+  for (int k = 0; k < d->modes; k++) {
+    const mode *m = &d->mode[k];
+    if (d->rank_two != NULL)
+      dvi__rank_two_assemble(d->rank_two, a->h, m->parts, m->U, m->T, d->values);
+    else
+      mode_assemble(a, m, d->values);
+    DVI_TRY(dvi__linear_factor(m->linear, d->values));
   }
   return DVI_OK;
 }
@@ -271,6 +290,8 @@ static void solve_mode(dvi__decoupled *d, const mode *m)
 {
   const size_t s = (size_t)d->action->s, n = (size_t)d->action->n;
   double *coefficient = d->coefficient + m->place;
+  const size_t rows = (size_t)systems_pattern(d)->columns;
+  memset(d->b + (size_t)m->parts * n, 0, (size_t)m->parts * (rows - n) * sizeof(double));
   if (m->parts == 1) {
     for (size_t i = 0; i < n; i++) d->b[i] = coefficient[i * s];
     dvi__linear_solve(m->linear, d->b);

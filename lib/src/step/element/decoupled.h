@@ -26,6 +26,9 @@ void dvi__decoupled_destroy(dvi__decoupled **decoupled);
  * DVI_NO_MEMORY, DVI_BAD_SIZE, DVI_SOLVER_FAILED. */
 dvi_status dvi__decoupled_analyse(dvi__decoupled *decoupled, dvi__linear_cost *cost);
 
+/* Tell whether the systems are sparse where the Hessian is not (transformed.c). */
+int dvi__decoupled_has_rank_two(const dvi__decoupled *decoupled);
+
 /* Give the cost of all factors as a multiple of that of one real system of their pattern. */
 double dvi__decoupled_weight(const dvi__decoupled *decoupled);
 

@@ -7,6 +7,7 @@
  * the chord of action.h (chord_members.c). */
 #ifndef DVI_STEP_ELEMENT_MEMBERS_H
 #define DVI_STEP_ELEMENT_MEMBERS_H
+#include "num/simd/members_chord.h"
 #include "step/element/action.h"
 
 typedef struct dvi__action_members {
@@ -44,6 +45,13 @@ typedef struct dvi__action_members {
 /* Tell whether elements of this action can be iterated side by side, and whether on the paths. */
 int dvi__action_has_members(const dvi__action *action);
 int dvi__action_has_chord_members(const dvi__action *action);
+
+/* Set the sizes and tables of an iteration on paths, for the action's h. */
+void dvi__action_members_tables(const dvi__action *action, dvi__members_chord *loops);
+
+/* Continue paths [n*s*width] of the last step, `ratio` times as long, as dvi__action_continue. */
+void dvi__action_continue_members(dvi__action *action, double ratio, int width, const double *last,
+                                  double *Y);
 
 /* Create the lanes of up to `capacity` members, for an action that has them. */
 dvi_status dvi__action_members_create(dvi__action *action, int capacity,

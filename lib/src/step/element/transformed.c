@@ -267,3 +267,125 @@ dvi_status dvi__action_duration(dvi__action *a, const double *Y, double *duratio
   *duration = a->h * sum;
   return DVI_OK;
 }
+
+/* ---- the Jacobian at one place ---- */
+
+/* Without (E0 - E) g_qq, which is small near the orbit, the Hessian of Lg is that of a sparse L and
+ * four products with g_q (system/rescale/transformed.c). A system h U Lg_qq + T (Lg_wq - Lg_qw) +
+ * Lg_ww/h is then S + g_q x^T + y g_q^T with S sparse,
+ *
+ *     S = h U g L_qq + T (L_vq - L_qv) + L_vv/(h g),
+ *     x = h U (d + v.L_vv v/(2 g) g_q) + T L_vv v/g,   y the same with -T,
+ *
+ * which is solved with two more unknowns, x^T z and g_q^T z. They leave the determinant as it
+ * is. */
+struct dvi__rank_two {
+  dvi__transformed *of;
+  dvi__pattern joint, pattern; /* of S, and with the border */
+  dvi__joint_entry *block;     /* [entries of joint] */
+  dvi__curvature at;
+};
+
+/* Full matrices are as fast for fewer coordinates, and for a pattern that fills more than this part
+ * of the matrix. */
+enum { LEAST_BORDERED = 48 };
+static const double most_filled = 0.25;
+
+/* Put two full rows below the joint pattern, and two columns behind it. */
+static dvi_status fill_border(dvi__rank_two *b)
+{
+  const int n = b->joint.columns, entries = dvi__pattern_entries(&b->joint);
+  dvi__pattern *to = &b->pattern;
+  to->rows = to->columns = n + 2;
+  to->start = DVI_NEW(int, (size_t)n + 3);
+  to->row = DVI_NEW(int, (size_t)entries + 4 * (size_t)n + 2);
+  if (to->start == NULL || to->row == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "action: no memory for a border in %d dimensions", n);
+  int at = 0;
+  for (int j = 0; j < n; j++, at += 2) {
+    to->start[j] = at;
+    for (int e = b->joint.start[j]; e < b->joint.start[j + 1]; e++) to->row[at++] = b->joint.row[e];
+    to->row[at] = n;
+    to->row[at + 1] = n + 1;
+  }
+  for (int j = n; j < n + 2; j++) {
+    to->start[j] = at;
+    for (int i = 0; i < n; i++) to->row[at++] = i;
+    to->row[at++] = j;
+  }
+  to->start[n + 2] = at;
+  return DVI_OK;
+}
+
+dvi_status dvi__rank_two_create(const dvi_system *system, dvi__rank_two **rank_two)
+{
+  dvi__transformed *of = dvi__transformed_of(system);
+  const double n = system->n;
+  *rank_two = NULL;
+  if (of == NULL || system->n < LEAST_BORDERED) return DVI_OK;
+  dvi__rank_two *b = *rank_two = DVI_NEW(dvi__rank_two, 1);
+  if (b == NULL) return dvi__fail(DVI_NO_MEMORY, "action: no memory");
+  b->of = of;
+  dvi_status status = dvi__joint_create(dvi__transformed_base(of), NULL, &b->joint, &b->block);
+  const int sparse = status == DVI_OK && dvi__pattern_entries(&b->joint) <= most_filled * n * n;
+  if (sparse) status = fill_border(b);
+  if (!sparse || status != DVI_OK) dvi__rank_two_destroy(rank_two);
+  return status;
+}
+
+void dvi__rank_two_destroy(dvi__rank_two **rank_two)
+{
+  dvi__rank_two *b = *rank_two;
+  if (b == NULL) return;
+  dvi__pattern_clear(&b->joint);
+  dvi__pattern_clear(&b->pattern);
+  dvi__release(b->block);
+  dvi__release(b);
+  *rank_two = NULL;
+}
+
+const dvi__pattern *dvi__rank_two_pattern(const dvi__rank_two *b)
+{
+  return &b->pattern;
+}
+
+dvi_status dvi__rank_two_evaluate(dvi__rank_two *b, double t, const double *q, const double *w)
+{
+  return dvi__transformed_curvature(b->of, t, q, w, &b->at);
+}
+
+/* One part, real or imaginary, of all entries. */
+static void assemble_part(const dvi__rank_two *b, double hU, double T, double by_h, double unit,
+                          int stride, double *values)
+{
+  const dvi__curvature *at = &b->at;
+  const int n = b->joint.columns;
+  const double half = at->vMv / (2 * at->g);
+  for (int j = 0; j < n; j++) {
+    for (int e = b->joint.start[j]; e < b->joint.start[j + 1]; e++, values += stride) {
+      const dvi__joint_entry *block = &b->block[e];
+      *values = hU * at->g * dvi__entry_or_zero(at->L_qq, block->qq) +
+                T * (dvi__entry_or_zero(at->L_qv, block->vq) -
+                     dvi__entry_or_zero(at->L_qv, block->qv)) +
+                by_h * dvi__entry_or_zero(at->L_vv, block->vv);
+    }
+    values[0] = hU * (at->d[j] + half * at->g_q[j]) + T * at->Mv[j] / at->g;
+    values[stride] = unit * at->g_q[j];
+    values += 2 * (size_t)stride;
+  }
+  for (int i = 0; i < n; i++, values += stride) *values = unit * at->g_q[i];
+  *values = -unit;
+  values += stride;
+  for (int i = 0; i < n; i++, values += stride)
+    *values = hU * (at->d[i] + half * at->g_q[i]) - T * at->Mv[i] / at->g;
+  *values = -unit;
+}
+
+void dvi__rank_two_assemble(const dvi__rank_two *b, double h, int parts, const double *U,
+                            const double *T, double *values)
+{
+  for (int part = 0; part < parts; part++) {
+    const double unit = part == 0;
+    assemble_part(b, h * U[part], T[part], unit / (h * b->at.g), unit, parts, values + part);
+  }
+}

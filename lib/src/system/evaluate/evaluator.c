@@ -5,6 +5,7 @@
 #include "num/finite.h"
 #include "system/evaluate/dynamics.h"
 #include "system/evaluate/evaluator_struct.h"
+#include "system/evaluate/form_batches.h"
 #include "system/term/force.h"
 #include "system/term/vector.h"
 
@@ -438,8 +439,8 @@ static void add_embedded(const dvi__pattern *part, const int *where, size_t poin
       whole[(size_t)where[entry] * points + k] += sign * values[entry * points + k];
 }
 
-static dvi_status potential_hessians(dvi__evaluator *e, int count, const double *t, const double *q,
-                                     double *L_qq)
+dvi_status dvi__subtract_potential_hessians(dvi__evaluator *e, int count, const double *t,
+                                            const double *q, double *L_qq)
 {
   const dvi_system *s = e->system;
   for (int p = 0; p < s->potential_count; p++) {
@@ -450,9 +451,7 @@ static dvi_status potential_hessians(dvi__evaluator *e, int count, const double 
   return DVI_OK;
 }
 
-/* Move the entries of the Lagrangian's own block, which are packed at the front of the whole L_qq,
- * to their places, from the back. */
-static void spread_entries(const dvi_system *s, size_t points, double *L_qq)
+void dvi__spread_entries(const dvi_system *s, size_t points, double *L_qq)
 {
   int from = dvi__pattern_entries(&s->lagrangian->qq) - 1;
   for (int entry = dvi__pattern_entries(&s->qq) - 1; entry >= 0; entry--) {
@@ -470,8 +469,8 @@ static dvi_status sum_hessians(dvi__evaluator *e, int count, const double *t, co
   const size_t points = (size_t)count;
   if (s->lagrangian != NULL) {
     DVI_TRY(dvi__general_hessian(s->lagrangian, &e->scratch, count, t, q, v, L_qq, L_qv, L_vv));
-    spread_entries(s, points, L_qq);
-    return potential_hessians(e, count, t, q, L_qq);
+    dvi__spread_entries(s, points, L_qq);
+    return dvi__subtract_potential_hessians(e, count, t, q, L_qq);
   }
   if (L_vv != NULL) copy_mass_hessian(s, count, L_vv);
   if (s->vector != NULL && L_qv != NULL)
@@ -482,7 +481,7 @@ static dvi_status sum_hessians(dvi__evaluator *e, int count, const double *t, co
     DVI_TRY(dvi__vector_hessian(s->vector, &e->scratch, count, t, q, v, e->term));
     add_embedded(&s->vector->qq, s->vector->in_qq, points, 1, e->term, L_qq);
   }
-  return potential_hessians(e, count, t, q, L_qq);
+  return dvi__subtract_potential_hessians(e, count, t, q, L_qq);
 }
 
 dvi_status dvi__lagrangian_hessian(dvi__evaluator *e, int count, const double *t, const double *q,
@@ -529,17 +528,20 @@ dvi_status dvi__form_hessian(dvi__evaluator *e, const double *q, const double *w
   const dvi_status status = dvi__general_hessian(e->system->lagrangian, &e->scratch, 1, &any_time,
                                                  q, w, alpha_w_qq, alpha_q, e->hessian[2]);
   dvi__count_differences(e);
-  if (status == DVI_OK) spread_entries(e->system, 1, alpha_w_qq);
+  if (status == DVI_OK) dvi__spread_entries(e->system, 1, alpha_w_qq);
   return status;
 }
 
 dvi_status dvi__velocity_hessian(dvi__evaluator *e, double t, const double *q, const double *v,
                                  const double **L_vv)
 {
+  const dvi__lagrangian_term *l = e->system->lagrangian;
+  const int alone = l->computed != NULL;
   e->counters->hessians++;
   *L_vv = e->hessian[2];
-  const dvi_status status = dvi__general_hessian(e->system->lagrangian, &e->scratch, 1, &t, q, v,
-                                                 e->hessian[0], e->hessian[1], e->hessian[2]);
+  const dvi_status status = dvi__general_hessian(l, &e->scratch, 1, &t, q, v,
+                                                 alone ? NULL : e->hessian[0],
+                                                 alone ? NULL : e->hessian[1], e->hessian[2]);
   dvi__count_differences(e);
   return status;
 }

@@ -33,4 +33,8 @@ struct dvi__evaluator {
 /* Add the points at which differences evaluated a function to the counters. */
 void dvi__count_differences(dvi__evaluator *e);
 
+/* Move the entries of the Lagrangian's own block, which are packed at the front of the whole L_qq,
+ * to their places, from the back. */
+void dvi__spread_entries(const dvi_system *system, size_t points, double *L_qq);
+
 #endif

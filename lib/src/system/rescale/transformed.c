@@ -1,13 +1,4 @@
-/* Derivatives of the transformed Lagrangian. With v = w/g and the energy E = L_v.v - L, all of L at
- * (q,v),
- *
- *     Lg_q  = g L_q + (E0 - E) g_q            Lg_w = L_v
- *     Lg_qq = g L_qq + d g_q^T + g_q d^T + (v.L_vv v)/g g_q g_q^T + (E0 - E) g_qq,
- *             d = L_q - L_qv v
- *     Lg_qw = L_qv - g_q (L_vv v)^T/g         Lg_ww = L_vv/g
- *
- * On the exact orbit E = E0. At a step's nodes E - E0 is the error of the method. */
-#include "system/rescale/transformed.h"
+#include "system/rescale/transformed_struct.h"
 
 #include <math.h>
 #include <string.h>
@@ -19,31 +10,11 @@
 #include "system/evaluate/dynamics.h"
 #include "system/evaluate/evaluator_struct.h"
 
-/* Work for a batch, all in one block. */
-typedef struct work {
-  double *numbers;
-  double *v, *g_q, *L_q, *L_v, *d, *Mv; /* work [n*capacity], with Mv = L_vv v */
-  /* work [capacity], with lag = E0 - E and vMv = v.L_vv v */
-  double *g, *lag, *vMv;
-  /* Hessians [entries*capacity] of g, and of the system's L */
-  double *g_qq, *base_qq, *base_qv, *base_vv;
-} work;
+typedef dvi__transformed_work work;
 
 /* Numbers of the Hessians for which there is room at first. Most steps of small systems need no
  * more. */
 enum { SMALL_HESSIANS = 64 };
-
-struct dvi__transformed {
-  const dvi_system *base;
-  dvi_system *system;
-  dvi_monitor given;
-  dvi__monitor *monitor;
-  dvi__evaluator *evaluator; /* evaluator of base */
-  dvi_counters *counters;
-  double energy;
-  int capacity;
-  work work;
-};
 
 /* ---- room for batches ---- */
 
@@ -95,8 +66,8 @@ static dvi_status transformed_reserve(void *of, int capacity)
 
 /* ---- evaluation ---- */
 
-/* Compute g and v = w/g. */
-static dvi_status base_velocities(dvi__transformed *x, int count, const double *q, const double *w)
+dvi_status dvi__transformed_velocities(dvi__transformed *x, int count, const double *q,
+                                       const double *w)
 {
   const size_t points = (size_t)count;
   DVI_TRY(dvi__monitor_value(x->monitor, count, q, x->work.g));
@@ -113,7 +84,7 @@ static dvi_status transformed_value(void *of, int count, const double *t, const 
 {
   dvi__transformed *x = of;
   x->counters->values -= count;
-  DVI_TRY(base_velocities(x, count, q, w));
+  DVI_TRY(dvi__transformed_velocities(x, count, q, w));
   DVI_TRY(dvi__lagrangian_value(x->evaluator, count, t, q, x->work.v, L));
   for (int k = 0; k < count; k++) L[k] = x->work.g[k] * (L[k] + x->energy);
   return DVI_OK;
@@ -130,12 +101,11 @@ static void find_lag(const dvi__transformed *x, int count)
   for (size_t k = 0; k < points; k++) at->lag[k] += x->energy;
 }
 
-/* Compute all terms of first order, v, g, g_q, L_q, L_v and lag = E0 - E. */
-static dvi_status transformed_first_order(dvi__transformed *x, int count, const double *t,
-                                          const double *q, const double *w)
+dvi_status dvi__transformed_first_order(dvi__transformed *x, int count, const double *t,
+                                        const double *q, const double *w)
 {
   const work *at = &x->work;
-  DVI_TRY(base_velocities(x, count, q, w));
+  DVI_TRY(dvi__transformed_velocities(x, count, q, w));
   DVI_TRY(dvi__monitor_gradient(x->monitor, count, q, at->g_q));
   DVI_TRY(dvi__lagrangian_value(x->evaluator, count, t, q, at->v, at->lag));
   DVI_TRY(dvi__lagrangian_gradient(x->evaluator, count, t, q, at->v, at->L_q, at->L_v));
@@ -150,7 +120,7 @@ static dvi_status transformed_gradient(void *of, int count, const double *t, con
   const work *at = &x->work;
   const size_t n = (size_t)x->base->n, points = (size_t)count;
   x->counters->gradients -= count;
-  DVI_TRY(transformed_first_order(x, count, t, q, w));
+  DVI_TRY(dvi__transformed_first_order(x, count, t, q, w));
   for (size_t i = 0; i < n; i++)
     for (size_t k = 0; k < points; k++)
       L_q[i * points + k] = at->g[k] * at->L_q[i * points + k] +
@@ -161,85 +131,6 @@ static dvi_status transformed_gradient(void *of, int count, const double *t, con
   return dvi__fail(DVI_NOT_FINITE, "time transform: the gradient is not finite");
 }
 
-/* Add A x to y at every point, with A of a pattern. */
-static void add_pattern_product(const dvi__pattern *pattern, size_t points, const double *A,
-                                const double *x, double *y)
-{
-  for (size_t j = 0; j < (size_t)pattern->columns; j++)
-    for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++)
-      for (size_t k = 0; k < points; k++)
-        y[(size_t)pattern->row[e] * points + k] += A[(size_t)e * points + k] * x[j * points + k];
-}
-
-/* Compute d, Mv and vMv. */
-static void second_order(dvi__transformed *x, size_t points)
-{
-  const work *at = &x->work;
-  const size_t n = (size_t)x->base->n;
-  memset(at->d, 0, n * points * sizeof(double));
-  memset(at->Mv, 0, n * points * sizeof(double));
-  memset(at->vMv, 0, points * sizeof(double));
-  add_pattern_product(&x->base->qv, points, at->base_qv, at->v, at->d);
-  add_pattern_product(&x->base->vv, points, at->base_vv, at->v, at->Mv);
-  for (size_t i = 0; i < n; i++)
-    for (size_t k = i * points; k < (i + 1) * points; k++) {
-      at->d[k] = at->L_q[k] - at->d[k];
-      at->vMv[k - i * points] += at->v[k] * at->Mv[k];
-    }
-}
-
-/* Compute the parts of L_qq and L_qw that come from g's derivatives, in all entries. */
-static void fill_full(const work *at, size_t n, size_t points, double *L_qq, double *L_qw)
-{
-  for (size_t j = 0; j < n; j++)
-    for (size_t i = 0; i < n; i++)
-      for (size_t k = 0; k < points; k++) {
-        const size_t e = (j * n + i) * points + k, row = i * points + k, column = j * points + k;
-        const double g_i = at->g_q[row], g_j = at->g_q[column], g = at->g[k];
-        L_qq[e] = at->d[row] * g_j + g_i * at->d[column] + at->vMv[k] / g * g_i * g_j +
-                  at->lag[k] * at->g_qq[e];
-        L_qw[e] = -g_i * at->Mv[column] / g;
-      }
-}
-
-/* Add the system's own blocks where their patterns have entries, multiplied by `by` unless it is
- * NULL. */
-static void add_base_block(const dvi__pattern *pattern, size_t n, size_t points, const double *A,
-                           const double *by, double *full)
-{
-  for (size_t j = 0; j < n; j++)
-    for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++)
-      for (size_t k = 0; k < points; k++)
-        full[(j * n + (size_t)pattern->row[e]) * points + k] += (by != NULL ? by[k] : 1) *
-                                                                A[(size_t)e * points + k];
-}
-
-static dvi_status transformed_hessian(void *of, int count, const double *t, const double *q,
-                                      const double *w, double *L_qq, double *L_qw, double *L_ww)
-{
-  dvi__transformed *x = of;
-  const work *at = &x->work;
-  const size_t n = (size_t)x->base->n, points = (size_t)count,
-               vv = (size_t)dvi__pattern_entries(&x->base->vv);
-  x->counters->hessians -= count;
-  DVI_TRY(transformed_first_order(x, count, t, q, w));
-  DVI_TRY(dvi__monitor_hessian(x->monitor, count, q, at->g_qq));
-  DVI_TRY(dvi__lagrangian_hessian(x->evaluator, count, t, q, at->v, at->base_qq, at->base_qv,
-                                  at->base_vv));
-  second_order(x, points);
-  fill_full(at, n, points, L_qq, L_qw);
-  add_base_block(&x->base->qq, n, points, at->base_qq, at->g, L_qq);
-  add_base_block(&x->base->qv, n, points, at->base_qv, NULL, L_qw);
-  for (size_t e = 0; e < vv; e++)
-    for (size_t k = 0; k < points; k++)
-      L_ww[e * points + k] = at->base_vv[e * points + k] / at->g[k];
-  if (dvi__first_not_finite(n * n * points, L_qq) < 0 &&
-      dvi__first_not_finite(n * n * points, L_qw) < 0 &&
-      dvi__first_not_finite(vv * points, L_ww) < 0)
-    return DVI_OK;
-  return dvi__fail(DVI_NOT_FINITE, "time transform: the Hessian is not finite");
-}
-
 static double transformed_noise(const void *of)
 {
   const dvi__transformed *x = of;
@@ -248,7 +139,7 @@ static double transformed_noise(const void *of)
 
 static const dvi__computed computed = {.value = transformed_value,
                                        .gradient = transformed_gradient,
-                                       .hessian = transformed_hessian,
+                                       .hessian = dvi__transformed_hessian,
                                        .noise = transformed_noise,
                                        .reserve = transformed_reserve};
 
@@ -378,6 +269,11 @@ dvi_status dvi__transformed_evaluate(dvi__transformed *x, int count, const doubl
     for (int k = 0; k < count; k++) at->V[k] += term[k];
   }
   return dvi__potentials_gradient(x->evaluator, count, t, q, at->V_q);
+}
+
+const dvi_system *dvi__transformed_base(const dvi__transformed *x)
+{
+  return x->base;
 }
 
 dvi__monitor *dvi__transformed_monitor(const dvi__transformed *x)

@@ -39,6 +39,20 @@ typedef struct dvi__rescaled {
 dvi_status dvi__transformed_evaluate(dvi__transformed *transformed, int count, const double *t,
                                      const double *q, const dvi__rescaled *at);
 
+/* Return the system that was transformed. */
+const dvi_system *dvi__transformed_base(const dvi__transformed *transformed);
+
+/* Compute what Lg's Hessian at one place is made of, but for g_qq: g, v.L_vv v, g_q [n], d [n] and
+ * L_vv v [n] (transformed.c), and the Hessians of L in the order of their patterns. The arrays are
+ * valid until another evaluation. */
+typedef struct dvi__curvature {
+  double g, vMv;
+  const double *g_q, *d, *Mv, *L_qq, *L_qv, *L_vv;
+} dvi__curvature;
+
+dvi_status dvi__transformed_curvature(dvi__transformed *transformed, double t, const double *q,
+                                      const double *w, dvi__curvature *at);
+
 /* Set E0, which is NaN before. */
 void dvi__transformed_set_energy(dvi__transformed *transformed, double energy);
 

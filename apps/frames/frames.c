@@ -1,4 +1,4 @@
-#include "watch/frames.h"
+#include "frames/frames.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,23 +8,31 @@
 
 enum { DIGITS = 12 };
 
-static const char ending[] = ".pvd";
+static const char ending[] = ".pvd", ending_of_one[] = ".vtkhdf";
 
-static bool ends_well(const char *path)
+static bool ends_with(const char *path, const char *end)
 {
-  const size_t length = strlen(path), end = sizeof ending - 1;
-  return length > end && strcmp(path + length - end, ending) == 0;
+  const size_t length = strlen(path), behind = strlen(end);
+  return length > behind && strcmp(path + length - behind, end) == 0;
 }
 
 int frames_start(frame_list *frames, const char *scene, const dvi_mesh *mesh, const char *path)
 {
   if (path == NULL) return DONE;
-  if (!ends_well(path)) return usage_error("run: --pvd %s: the name ends in .pvd", path);
+  if (!ends_with(path, ending) && !ends_with(path, ending_of_one))
+    return usage_error("run: --pvd %s: the name ends in .pvd or .vtkhdf", path);
   if (mesh == NULL)
     return usage_error("run: --pvd is for fields on meshes, and %s has none", scene);
   frames->mesh = mesh;
+  if (ends_with(path, ending_of_one) && store_module(path) == NULL) return FAILED;
   frames->path = path;
   return DONE;
+}
+
+void frames_move(frame_list *frames, const dvi_mesh *mesh)
+{
+  frames->mesh = mesh;
+  frames->moves = true;
 }
 
 bool frames_are_wanted(const frame_list *frames)
@@ -62,7 +70,8 @@ static char *next_name(const frame_list *frames)
   return name;
 }
 
-bool frames_add(frame_list *frames, double t, int views, const dvi_view *view)
+/* Write views as the next file of the list. */
+static bool add_file(frame_list *frames, double t, int views, const dvi_view *view)
 {
   char *name = frames_grow(frames) ? next_name(frames) : NULL;
   if (name == NULL) return false;
@@ -81,9 +90,19 @@ bool frames_add(frame_list *frames, double t, int views, const dvi_view *view)
   return status == DVI_OK || library_error(status) == DONE;
 }
 
-bool frames_keep(const frame_list *frames)
+bool frames_add(frame_list *frames, double t, int views, const dvi_view *view)
+{
+  return ends_with(frames->path, ending_of_one)
+             ? stored_views_add(&frames->stored, frames->path, frames->head, frames->mesh,
+                                frames->moves, t, views, view)
+             : add_file(frames, t, views, view);
+}
+
+bool frames_keep(frame_list *frames)
 {
   if (frames->path == NULL) return true;
+  if (ends_with(frames->path, ending_of_one))
+    return stored_views_close(&frames->stored, frames->path);
   const dvi_status status = dvi_series_write(frames->path, frames->count, frames->time,
                                              (const char *const *)frames->name);
   return status == DVI_OK || library_error(status) == DONE;
@@ -94,4 +113,5 @@ void frames_clear(frame_list *frames)
   for (int i = 0; i < frames->count; i++) free(frames->name[i]);
   free(frames->name);
   free(frames->time);
+  (void)stored_views_close(&frames->stored, frames->path);
 }

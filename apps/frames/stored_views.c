@@ -1,0 +1,134 @@
+#define _POSIX_C_SOURCE 200809L
+#include "frames/stored_views.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cli/command.h"
+
+static const char place_name[] = "vertex";
+
+/* ---- the grid ---- */
+
+/* Read the grid back from a .vtu file, as which the library writes meshes: where space repeats
+ * itself the grid has more points than the mesh. A field has the number of each point's vertex. */
+static bool read_grid(const char *temporary, const dvi_mesh *mesh, vtu_grid *grid)
+{
+  const int64_t vertices = dvi_mesh_count(mesh, 0);
+  double *number = calloc((size_t)vertices + 1, sizeof *number);
+  if (number == NULL) {
+    complain("out of memory");
+    return false;
+  }
+  for (int64_t i = 0; i < vertices; i++) number[i] = (double)i;
+  const dvi_view place = {place_name, number, 1, 0};
+  const dvi_status status = dvi_mesh_write(mesh, temporary, 1, &place);
+  const bool good = status == DVI_OK ? vtu_read(temporary, grid) == DONE
+                                     : library_error(status) == DONE;
+  (void)unlink(temporary);
+  free(number);
+  return good;
+}
+
+static bool make_grid(const char *path, const dvi_mesh *mesh, vtu_grid *grid)
+{
+  const size_t size = strlen(path) + sizeof ".grid-.vtu" + 24;
+  char *temporary = malloc(size);
+  vtu_clear(grid);
+  if (temporary == NULL) {
+    complain("out of memory");
+    return false;
+  }
+  (void)snprintf(temporary, size, "%s.grid-%ld.vtu", path, (long)getpid());
+  const bool good = read_grid(temporary, mesh, grid);
+  free(temporary);
+  return good;
+}
+
+/* ---- fields ---- */
+
+/* Give the values of a view at the grid's points, to be freed. NULL without memory. */
+static double *place_values(const vtu_grid *grid, const dvi_view *view)
+{
+  const double *place = vtu_find(grid, place_name)->value;
+  const size_t components = (size_t)view->components;
+  double *value = calloc((size_t)grid->points * components + 1, sizeof *value);
+  for (int64_t i = 0; i < grid->points && value != NULL; i++)
+    memcpy(value + (size_t)i * components, view->values + (size_t)place[i] * components,
+           components * sizeof *value);
+  return value;
+}
+
+static void free_fields(int views, const dvi_view *view, hdf5_field *field)
+{
+  for (int i = 0; i < views && field != NULL; i++)
+    if (field[i].value != view[i].values) free((void *)field[i].value);
+  free(field);
+}
+
+/* Give the views as fields of the grid. NULL without memory, which is complained of. */
+static hdf5_field *make_fields(const vtu_grid *grid, int64_t vertices, int views,
+                               const dvi_view *view)
+{
+  hdf5_field *field = calloc((size_t)views + 1, sizeof *field);
+  bool good = field != NULL;
+  for (int i = 0; i < views && good; i++) {
+    const bool is_placed = view[i].degree == 0 && grid->points != vertices;
+    field[i] = (hdf5_field){.name = view[i].name,
+                            .components = view[i].components,
+                            .is_by_cell = view[i].degree > 0,
+                            .value = is_placed ? place_values(grid, &view[i]) : view[i].values};
+    good = field[i].value != NULL;
+  }
+  if (good) return field;
+  complain("out of memory");
+  free_fields(views, view, field);
+  return NULL;
+}
+
+/* ---- the file ---- */
+
+static bool create(stored_views *stored, const char *path, const hdf5_head *head, int views,
+                   const hdf5_field *field)
+{
+  const hdf5_module *module = store_module(path);
+  if (stored->frames != NULL) return true;
+  if (!store_begin(&stored->file, path)) return false;
+  stored->frames = module->create_frames(stored->file.temporary, head, views, field);
+  return stored->frames != NULL || store_refuse(path);
+}
+
+bool stored_views_add(stored_views *stored, const char *path, const hdf5_head *head,
+                      const dvi_mesh *mesh, bool moves, double t, int views, const dvi_view *view)
+{
+  const hdf5_module *module = store_module(path);
+  const bool has_grid = moves || stored->frames == NULL;
+  if (module == NULL || (has_grid && !make_grid(path, mesh, &stored->grid))) return false;
+  hdf5_field *field = make_fields(&stored->grid, dvi_mesh_count(mesh, 0), views, view);
+  if (field == NULL) return false;
+  const vtu_grid *drawn = &stored->grid;
+  const hdf5_grid grid = {.points = drawn->points,
+                          .cells = drawn->cells,
+                          .corners = drawn->corners,
+                          .type = (int)drawn->kind,
+                          .point = drawn->point,
+                          .vertex = drawn->vertex};
+  const bool good = create(stored, path, head, views, field) &&
+                    (module->add_frame(stored->frames, t, has_grid ? &grid : NULL, field) ||
+                     store_refuse(path));
+  free_fields(views, view, field);
+  /* With its first views the file comes to its place, where it grows. */
+  return good && (stored->file.stream == NULL || file_keep(&stored->file));
+}
+
+bool stored_views_close(stored_views *stored, const char *path)
+{
+  bool good = true;
+  if (stored->frames != NULL && !store_module(path)->close_frames(&stored->frames))
+    good = store_refuse(path);
+  file_discard(&stored->file);
+  vtu_clear(&stored->grid);
+  return good;
+}
