@@ -30,6 +30,8 @@ install(DIRECTORY docs DESTINATION "${CMAKE_INSTALL_DOCDIR}"
         FILES_MATCHING PATTERN "*.md" PATTERN "*.svg" PATTERN "*.bib")
 install(DIRECTORY apps/examples apps/problems apps/scenes DESTINATION "${CMAKE_INSTALL_DOCDIR}/apps"
         PATTERN "CMakeLists.txt" EXCLUDE)
+install(DIRECTORY python/notebooks DESTINATION "${CMAKE_INSTALL_DOCDIR}/python"
+        FILES_MATCHING PATTERN "*.ipynb" PATTERN "*.md" PATTERN "*.yaml")
 # Manual pages and completions are made from what the command prints for --help.
 if(TARGET dvi_command AND NOT CMAKE_CROSSCOMPILING)
   set(from_help "${PROJECT_BINARY_DIR}/from_help")

@@ -2,8 +2,8 @@
 # The manual pages and the completions that are made from --help have all options, and bash
 # completes with them.
 # Usage: test_completions.sh DVI
-from_help=$(cd "$(dirname "$0")/../../cmake" && pwd)/from_help.sh
-. "$(dirname "$0")/check.sh"
+from_help=$(cd "$(dirname "$0")/../../../cmake" && pwd)/from_help.sh
+. "$(dirname "$0")/../check.sh"
 
 sh "$from_help" "$dvi" . || fail 'the files are made'
 # Words of completions call dvi by this name.
