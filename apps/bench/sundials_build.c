@@ -29,13 +29,13 @@ enum { COUNT = 1000, CALLS = 200, TRIALS = 5 };
  * numbers. */
 static const double ratio_of_unoptimised = 3.2;
 
-static void sum(double a, const double *x, double b, const double *y, double *z)
+static void blend(double a, const double *x, double b, const double *y, double *z)
 {
   for (int i = 0; i < COUNT; i++) z[i] = a * x[i] + b * y[i];
 }
 
 /* The compiler must not know which function is called, and with which arguments. */
-static void (*volatile own_sum)(double, const double *, double, const double *, double *) = sum;
+static void (*volatile own_sum)(double, const double *, double, const double *, double *) = blend;
 
 /* What libdvi has for this file: the time of so many sums of SUNDIALS' vectors, or NaN. */
 double dvi__sundials_sum_time(int count, int calls, double (*clock)(void));
