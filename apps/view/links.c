@@ -150,6 +150,14 @@ static bool add_row(const problem *scene, const dvi_holonomic *term, int a, cons
   return points < 2 || pairs_add(list, point[0], point[1]);
 }
 
+/* Evaluate the gradients of constraints at the start. */
+static bool constraint_entries(const problem *scene, const dvi_holonomic *term, double *entry)
+{
+  const double t = 0;
+  return (term->gradient_batch != NULL ? term->gradient_batch(1, &t, scene->q, entry, term->user)
+                                       : term->gradient(t, scene->q, entry, term->user)) == 0;
+}
+
 static bool add_constraints(const problem *scene, const view_layout *layout, pairs *list)
 {
   bool good = true;
@@ -160,7 +168,7 @@ static bool add_constraints(const problem *scene, const view_layout *layout, pai
                                : (size_t)scene->nq * (size_t)term->count;
     double *entry = calloc(entries + 1, sizeof *entry);
     good = entry != NULL;
-    if (good && term->gradient(0, scene->q, entry, term->user) == 0)
+    if (good && constraint_entries(scene, term, entry))
       for (int a = 0; a < term->count && good; a++)
         good = add_row(scene, term, a, entry, layout, list);
     free(entry);

@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "cli/command.h"
+#include "cli/signals.h"
 #include "load/density.h"
 #include "load/open.h"
 #include "load/open_march.h"
@@ -172,6 +173,8 @@ int view_run_scene(const view_rerun *run, problem *scene, view_files *files)
   *files = (view_files){.has_grids = scene->scene != NULL &&
                                      (has_field(scene) || dvi_scene_moving(scene->scene) != NULL ||
                                       dvi_scene_grid_only(scene->scene) != NULL)};
+  /* From here on a signal ends the run in good order, so that its folder is removed. */
+  (void)signals_note(NULL);
   int code = find_interval(run, scene, &every);
   if (code == DONE) code = make_folder(files);
   if (code != DONE) return code;
