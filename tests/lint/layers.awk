@@ -99,7 +99,8 @@ BEGIN {
   uses["bench"] = uses["mechanics"] " mechanics"
   uses["frames"] = "cli plot picture hdf5 store"
   uses["watch"] = uses["bench"] " picture hdf5 store frames"
-  uses["cmd"] = uses["watch"] " watch bench sweep boundary varied"
+  uses["view"] = "cli csv load picture"
+  uses["cmd"] = uses["watch"] " watch bench sweep boundary varied view"
   uses["main.c"] = "cli"
   # Single headers of other rooms that a room may include.
   also["reference solve/sundials.h"] = 1
