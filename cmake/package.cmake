@@ -25,10 +25,10 @@ endif()
 file(GLOB scenes CONFIGURE_DEPENDS apps/scenes/*.yaml apps/scenes/*/*.yaml)
 install(FILES ${scenes} DESTINATION "${CMAKE_INSTALL_DATADIR}/dvi/scenes")
 # The pages keep their folders, and everything that they link to is installed with them.
-install(FILES README.md CHANGELOG.md LICENSE LICENSES/three.js.txt
+install(FILES README.md CHANGELOG.md LICENSE LICENSES/MIT.txt
         DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 install(DIRECTORY docs DESTINATION "${CMAKE_INSTALL_DOCDIR}"
-        FILES_MATCHING PATTERN "*.md" PATTERN "*.svg" PATTERN "*.bib")
+        FILES_MATCHING PATTERN "*.md" PATTERN "*.svg" PATTERN "*.png" PATTERN "*.bib")
 install(DIRECTORY apps/examples apps/problems apps/scenes DESTINATION "${CMAKE_INSTALL_DOCDIR}/apps"
         PATTERN "CMakeLists.txt" EXCLUDE)
 install(DIRECTORY python/notebooks DESTINATION "${CMAKE_INSTALL_DOCDIR}/python"

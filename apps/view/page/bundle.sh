@@ -10,8 +10,8 @@ cp "$here"/*.js "$here"/package.json "$here"/package-lock.json "$work"
 (
   cd "$work"
   npm ci --ignore-scripts --no-audit --no-fund >npm.log 2>&1 || { cat npm.log >&2; exit 1; }
-  cmp -s node_modules/three/LICENSE "$here/../../../LICENSES/three.js.txt" || {
-    echo "bundle.sh: LICENSES/three.js.txt is not the licence of this three.js" >&2
+  cmp -s node_modules/three/LICENSE "$here/../../../LICENSES/MIT.txt" || {
+    echo "bundle.sh: LICENSES/MIT.txt is not the licence of this three.js" >&2
     exit 1
   }
   esbuild main.js --bundle --minify --format=iife --target=es2020 --charset=ascii \
