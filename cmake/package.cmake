@@ -5,9 +5,9 @@ include(CMakePackageConfigHelpers)
 set(package_directory "${CMAKE_INSTALL_LIBDIR}/cmake/dvi")
 
 install(DIRECTORY lib/include/dvi DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
-install(TARGETS dvi dvi_scene EXPORT dviTargets)
+install(TARGETS dvi dvi_scene dvi_study EXPORT dviTargets)
 install(TARGETS dvi_static EXPORT dviStaticTargets)
-set_target_properties(dvi_scene PROPERTIES INSTALL_RPATH "$ORIGIN")
+set_target_properties(dvi_scene dvi_study PROPERTIES INSTALL_RPATH "$ORIGIN")
 # A SUNDIALS from a prefix is found after the installation, too.
 set_target_properties(dvi PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)
 if(TARGET dvi_command)
@@ -60,5 +60,7 @@ file(RELATIVE_PATH pc_prefix "${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig" "${CMAKE_I
 string(REGEX REPLACE "/$" "" pc_prefix "${pc_prefix}")
 configure_file(cmake/dvi.pc.in dvi.pc @ONLY)
 configure_file(cmake/dvi-scene.pc.in dvi-scene.pc @ONLY)
+configure_file(cmake/dvi-study.pc.in dvi-study.pc @ONLY)
 install(FILES "${PROJECT_BINARY_DIR}/dvi.pc" "${PROJECT_BINARY_DIR}/dvi-scene.pc"
+              "${PROJECT_BINARY_DIR}/dvi-study.pc"
         DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")

@@ -1,13 +1,12 @@
 #include "bench/sundials_build.h"
 
 #include <dvi/dvi.h>
+#include <dvi/study/study.h>
 #include <math.h>
 #include <nvector/nvector_serial.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <sundials/sundials_config.h>
-
-#include "study/clock.h"
 
 /* Defined by the build, but not for a compiler that is called by hand. */
 #ifndef DVI_BUILD_SUNDIALS
@@ -48,14 +47,14 @@ void sundials_build_sum(double a, const double *x, double b, const double *y, do
 
 static double time_calls(N_Vector x, N_Vector y, N_Vector z, bool own)
 {
-  const double began = cpu_now();
+  const double began = dvi_study_clock();
   for (int i = 0; i < CALLS; i++)
     if (own)
       sundials_build_sum(1.5, N_VGetArrayPointer(x), 2.5, N_VGetArrayPointer(y),
                          N_VGetArrayPointer(z));
     else
       N_VLinearSum(1.5, x, 2.5, y, z);
-  return cpu_now() - began;
+  return dvi_study_clock() - began;
 }
 
 /* Compare the least times, by turns. */
