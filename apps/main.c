@@ -14,29 +14,14 @@ typedef struct subcommand {
 } subcommand;
 
 static const subcommand subcommands[] = {
-    {"list", list_command},
-    {"explain", explain_command},
-    {"run", run_command},
-    {"order", order_command},
-    {"bench", bench_command},
-    {"path", path_command},
-    {"control", control_command},
-    {"gradient", gradient_command},
-    {"fit", fit_command},
-    {"check", check_command},
-    {"init", init_command},
-    {"sweep", sweep_command},
-    {"resonance", resonance_command},
-    {"emit-c", emit_c_command},
-    {"mesh", mesh_command},
-    {"modes", modes_command},
-    {"stability", stability_command},
-    {"solve", solve_command},
-    {"spectrum", spectrum_command},
-    {"plot", plot_command},
-    {"regge", regge_command},
-    {"curvature", curvature_command},
-    {NULL, NULL},
+    {"list", list_command},           {"explain", explain_command},     {"run", run_command},
+    {"order", order_command},         {"bench", bench_command},         {"path", path_command},
+    {"control", control_command},     {"gradient", gradient_command},   {"fit", fit_command},
+    {"check", check_command},         {"init", init_command},           {"sweep", sweep_command},
+    {"resonance", resonance_command}, {"emit-c", emit_c_command},       {"mesh", mesh_command},
+    {"modes", modes_command},         {"stability", stability_command}, {"solve", solve_command},
+    {"spectrum", spectrum_command},   {"plot", plot_command},           {"view", view_command},
+    {"regge", regge_command},         {"curvature", curvature_command}, {NULL, NULL},
 };
 
 static const char help[] =
@@ -58,6 +43,8 @@ static const char help[] =
     "grow\n"
     "  plot FILE.csv ...       draw columns of a CSV file against each other: orbits, phase "
     "portraits\n"
+    "  view PROBLEM ...        write a page that shows a run in a browser: what moves, fields, "
+    "curves\n"
     "  spectrum FILE.csv ...   find frequencies, decay rates and amplitudes in columns of a CSV "
     "file\n"
     "  emit-c SCENE.yaml ...   write a C file that declares a scene's system by callbacks\n"

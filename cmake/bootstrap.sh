@@ -14,7 +14,7 @@ packages="gcc g++ libc6-dev make cmake pkg-config libsundials-dev libsuitesparse
   python3-dev python3-cffi python3-numpy python3-h5py python3-setuptools python3-pytest"
 site_packages="python3 mkdocs"
 lint_packages="$site_packages clang clang-tidy clang-format cppcheck doxygen valgrind libc6-dbg
-  libclang-rt-dev"
+  libclang-rt-dev esbuild"
 
 usage() {
   cat >&2 <<'END'
@@ -93,6 +93,13 @@ install_packages() {
   rm -f "$log"
 }
 
+# Installs a browser for the test of the pages of dvi view where there is a package of it, as on
+# Debian. Without it the test is skipped.
+install_browser() {
+  browser=chromium-headless-shell
+  if apt-cache show $browser >/dev/null 2>&1; then install_packages $browser; fi
+}
+
 # build PRESET [OPTION...]: configure and build; output only if it fails, or if there are warnings.
 # Messages of progress, which nobody sees, would start one more process for each source.
 build() {
@@ -162,6 +169,7 @@ END
 # Runs the gates and valgrind on the build that users get, then all tests by clang with sanitizers.
 lint() {
   install_packages "$lint_packages"
+  install_browser
   status=0
   build lint
   run_tests lint || status=1

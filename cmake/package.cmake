@@ -1,15 +1,17 @@
-# Installation: headers, both libraries, the command, its manual page, and the files that
-# find_package and pkg-config read.
+# Installation: headers, the libraries, the command, its manual pages and completions, and the files
+# that find_package and pkg-config read.
 
 include(CMakePackageConfigHelpers)
 set(package_directory "${CMAKE_INSTALL_LIBDIR}/cmake/dvi")
 
 install(DIRECTORY lib/include/dvi DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
 install(TARGETS dvi dvi_scene dvi_study EXPORT dviTargets)
+# Programs do not link this one, libdvi loads it.
+install(TARGETS dvi_sundials LIBRARY NAMELINK_SKIP)
 install(TARGETS dvi_static EXPORT dviStaticTargets)
-set_target_properties(dvi_scene dvi_study PROPERTIES INSTALL_RPATH "$ORIGIN")
-# A SUNDIALS from a prefix is found after the installation, too.
-set_target_properties(dvi PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)
+set_target_properties(dvi dvi_scene dvi_study PROPERTIES INSTALL_RPATH "$ORIGIN")
+# Libraries from a prefix are found after the installation, too.
+set_target_properties(dvi dvi_sundials PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)
 if(TARGET dvi_command)
   file(RELATIVE_PATH to_libraries "${CMAKE_INSTALL_FULL_BINDIR}" "${CMAKE_INSTALL_FULL_LIBDIR}")
   set_target_properties(
@@ -23,13 +25,29 @@ endif()
 file(GLOB scenes CONFIGURE_DEPENDS apps/scenes/*.yaml apps/scenes/*/*.yaml)
 install(FILES ${scenes} DESTINATION "${CMAKE_INSTALL_DATADIR}/dvi/scenes")
 # The pages keep their folders, and everything that they link to is installed with them.
-install(FILES README.md CHANGELOG.md LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}")
+install(FILES README.md CHANGELOG.md LICENSE LICENSES/three.js.txt
+        DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 install(DIRECTORY docs DESTINATION "${CMAKE_INSTALL_DOCDIR}"
         FILES_MATCHING PATTERN "*.md" PATTERN "*.svg" PATTERN "*.bib")
 install(DIRECTORY apps/examples apps/problems apps/scenes DESTINATION "${CMAKE_INSTALL_DOCDIR}/apps"
         PATTERN "CMakeLists.txt" EXCLUDE)
-if(EXISTS "${PROJECT_SOURCE_DIR}/docs/dvi.1")
-  install(FILES docs/dvi.1 DESTINATION "${CMAKE_INSTALL_MANDIR}/man1")
+install(DIRECTORY python/notebooks DESTINATION "${CMAKE_INSTALL_DOCDIR}/python"
+        FILES_MATCHING PATTERN "*.ipynb" PATTERN "*.md" PATTERN "*.yaml")
+# Manual pages and completions are made from what the command prints for --help.
+if(TARGET dvi_command AND NOT CMAKE_CROSSCOMPILING)
+  set(from_help "${PROJECT_BINARY_DIR}/from_help")
+  set(DVI_ZSH_COMPLETIONS "${CMAKE_INSTALL_DATADIR}/zsh/site-functions"
+      CACHE STRING "Folder of zsh's completions")
+  add_custom_command(
+    OUTPUT "${from_help}/zsh/_dvi"
+    COMMAND sh "${PROJECT_SOURCE_DIR}/cmake/from_help.sh" $<TARGET_FILE:dvi_command> "${from_help}"
+    DEPENDS dvi_command cmake/from_help.sh cmake/manual.awk cmake/completions.awk
+    COMMENT "Making manual pages and completions" VERBATIM)
+  add_custom_target(dvi_from_help ALL DEPENDS "${from_help}/zsh/_dvi")
+  install(DIRECTORY "${from_help}/man1" DESTINATION "${CMAKE_INSTALL_MANDIR}")
+  install(FILES "${from_help}/bash/dvi"
+          DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions")
+  install(FILES "${from_help}/zsh/_dvi" DESTINATION "${DVI_ZSH_COMPLETIONS}")
 endif()
 
 # A program that links the static library needs SUNDIALS and SuiteSparse; the shared library brings

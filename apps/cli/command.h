@@ -34,6 +34,7 @@ int stability_command(int argc, char **argv);
 int solve_command(int argc, char **argv);
 int spectrum_command(int argc, char **argv);
 int plot_command(int argc, char **argv);
+int view_command(int argc, char **argv);
 
 /** Spell a command line, "dvi NAME ARGUMENTS..", as a shell takes it. To be freed, NULL without
  * memory. */

@@ -27,20 +27,10 @@ static void on_signal(int number)
   _exit(128 + number);
 }
 
-/* Return whether a signal may have been ignored when the command was started. UCX, which SUNDIALS
- * brings along on Debian 13, handles SIGHUP when it is loaded, and hides whether nohup had it
- * ignored. A process that nohup starts has no terminal. */
-static bool signal_may_be_ignored(const struct sigaction *found)
-{
-  if (found->sa_handler == SIG_DFL) return false;
-  return found->sa_handler == SIG_IGN ||
-         !(isatty(STDIN_FILENO) || isatty(STDOUT_FILENO) || isatty(STDERR_FILENO));
-}
-
 static void catch_signal(int number, bool even_ignored)
 {
   struct sigaction action;
-  if (sigaction(number, NULL, &action) != 0 || (!even_ignored && signal_may_be_ignored(&action)))
+  if (sigaction(number, NULL, &action) != 0 || (!even_ignored && action.sa_handler == SIG_IGN))
     return;
   memset(&action, 0, sizeof action);
   action.sa_handler = on_signal;

@@ -16,7 +16,14 @@ static bool refuse_unreadable(const char *path)
 
 bool rows_open(row_file *file, const char *path)
 {
+  const char *dot = strrchr(path, '.');
   *file = (row_file){.path = path};
+  if (dot != NULL && strcmp(dot, ".h5") == 0) {
+    complain(
+        "'%s' is a file of HDF5, and CSV is read here; dvi.read of the Python package reads it",
+        path);
+    return false;
+  }
   file->stream = strcmp(path, "-") == 0 ? stdin : fopen(path, "r");
   return file->stream != NULL || refuse_unreadable(path);
 }

@@ -90,13 +90,13 @@ static hdf5_field *make_fields(const vtu_grid *grid, int64_t vertices, int views
 
 /* ---- the file ---- */
 
-static bool create(stored_views *stored, const char *path, const hdf5_head *head, int views,
-                   const hdf5_field *field)
+static bool create(stored_views *stored, const char *path, const hdf5_head *head,
+                   const hdf5_grid *grid, int views, const hdf5_field *field)
 {
   const hdf5_module *module = store_module(path);
   if (stored->frames != NULL) return true;
   if (!store_begin(&stored->file, path)) return false;
-  stored->frames = module->create_frames(stored->file.temporary, head, views, field);
+  stored->frames = module->create_frames(stored->file.temporary, head, grid, views, field);
   return stored->frames != NULL || store_refuse(path);
 }
 
@@ -115,7 +115,7 @@ bool stored_views_add(stored_views *stored, const char *path, const hdf5_head *h
                           .type = (int)drawn->kind,
                           .point = drawn->point,
                           .vertex = drawn->vertex};
-  const bool good = create(stored, path, head, views, field) &&
+  const bool good = create(stored, path, head, &grid, views, field) &&
                     (module->add_frame(stored->frames, t, has_grid ? &grid : NULL, field) ||
                      store_refuse(path));
   free_fields(views, view, field);

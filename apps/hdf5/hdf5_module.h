@@ -92,9 +92,9 @@ typedef struct hdf5_module {
   bool (*write_table)(const char *path, const hdf5_head *head, int64_t rows, const double *number,
                       const hdf5_texts *texts);
 
-  /** Create a file for fields on a grid. The grid, and the values of the fields, are not read. */
-  hdf5_frames *(*create_frames)(const char *path, const hdf5_head *head, int fields,
-                                const hdf5_field *field);
+  /** Create a file for fields on a grid, of which nothing is written yet. */
+  hdf5_frames *(*create_frames)(const char *path, const hdf5_head *head, const hdf5_grid *grid,
+                                int fields, const hdf5_field *field);
 
   /** Add the fields at a time. A grid is given with the first ones, and wherever it has moved: with
    * other points, but the same cells. NULL if it has not. */

@@ -6,8 +6,9 @@
 #include "hdf5/h5.h"
 #include "hdf5/head.h"
 
-/* Elements of a chunk: of arrays with a number for each step, and of large arrays. */
-enum { STEPS_AT_ONCE = 256, NUMBERS_AT_ONCE = 8192 };
+/* Rows of a chunk: of arrays with a row for each step, and at most of large arrays, which have
+ * those of a step. */
+enum { STEPS_AT_ONCE = 256, CHUNK_MOST = 8192 };
 
 static const char steps_name[] = "NSteps";
 
@@ -89,41 +90,48 @@ static bool put_type(hid_t root)
   return good;
 }
 
-static bool make_arrays(hdf5_frames *frames)
+static int64_t chunk_of(int64_t rows)
 {
+  return rows < 1 ? 1 : rows < CHUNK_MOST ? rows : CHUNK_MOST;
+}
+
+static bool make_arrays(hdf5_frames *frames, const hdf5_grid *grid)
+{
+  const int64_t ids = grid->cells * grid->corners;
   const struct {
     const char *name;
     bool is_of_step;
     hid_t type;
     int width;
+    int64_t rows; /* of a step */
   } list[ARRAYS] = {
-      [POINTS] = {"Points", false, H5T_NATIVE_DOUBLE, 3},
-      [CONNECTIVITY] = {"Connectivity", false, H5T_NATIVE_INT64, 0},
-      [OFFSETS] = {"Offsets", false, H5T_NATIVE_INT64, 0},
-      [TYPES] = {"Types", false, H5T_NATIVE_UINT8, 0},
-      [NUMBER_OF_POINTS] = {"NumberOfPoints", false, H5T_NATIVE_INT64, 0},
-      [NUMBER_OF_CELLS] = {"NumberOfCells", false, H5T_NATIVE_INT64, 0},
-      [NUMBER_OF_CONNECTIVITY_IDS] = {"NumberOfConnectivityIds", false, H5T_NATIVE_INT64, 0},
-      [VALUES] = {"Values", true, H5T_NATIVE_DOUBLE, 0},
-      [PART_OFFSETS] = {"PartOffsets", true, H5T_NATIVE_INT64, 0},
-      [NUMBER_OF_PARTS] = {"NumberOfParts", true, H5T_NATIVE_INT64, 0},
-      [POINT_OFFSETS] = {"PointOffsets", true, H5T_NATIVE_INT64, 0},
-      [CELL_OFFSETS] = {"CellOffsets", true, H5T_NATIVE_INT64, 1},
-      [CONNECTIVITY_ID_OFFSETS] = {"ConnectivityIdOffsets", true, H5T_NATIVE_INT64, 1},
+      [POINTS] = {"Points", false, H5T_NATIVE_DOUBLE, 3, grid->points},
+      [CONNECTIVITY] = {"Connectivity", false, H5T_NATIVE_INT64, 0, ids},
+      [OFFSETS] = {"Offsets", false, H5T_NATIVE_INT64, 0, grid->cells + 1},
+      [TYPES] = {"Types", false, H5T_NATIVE_UINT8, 0, grid->cells},
+      [NUMBER_OF_POINTS] = {"NumberOfPoints", false, H5T_NATIVE_INT64, 0, 1},
+      [NUMBER_OF_CELLS] = {"NumberOfCells", false, H5T_NATIVE_INT64, 0, 1},
+      [NUMBER_OF_CONNECTIVITY_IDS] = {"NumberOfConnectivityIds", false, H5T_NATIVE_INT64, 0, 1},
+      [VALUES] = {"Values", true, H5T_NATIVE_DOUBLE, 0, STEPS_AT_ONCE},
+      [PART_OFFSETS] = {"PartOffsets", true, H5T_NATIVE_INT64, 0, STEPS_AT_ONCE},
+      [NUMBER_OF_PARTS] = {"NumberOfParts", true, H5T_NATIVE_INT64, 0, STEPS_AT_ONCE},
+      [POINT_OFFSETS] = {"PointOffsets", true, H5T_NATIVE_INT64, 0, STEPS_AT_ONCE},
+      [CELL_OFFSETS] = {"CellOffsets", true, H5T_NATIVE_INT64, 1, STEPS_AT_ONCE},
+      [CONNECTIVITY_ID_OFFSETS] = {"ConnectivityIdOffsets", true, H5T_NATIVE_INT64, 1,
+                                   STEPS_AT_ONCE},
   };
   bool good = true;
-  for (int i = 0; i < ARRAYS && good; i++) {
-    const bool is_large = i <= TYPES;
+  for (int i = 0; i < ARRAYS && good; i++)
     good = h5_array_create(list[i].is_of_step ? frames->steps : frames->root, list[i].name,
-                           list[i].type, list[i].width, is_large ? NUMBERS_AT_ONCE : STEPS_AT_ONCE,
-                           &frames->array[i]);
-  }
+                           list[i].type, list[i].width, chunk_of(list[i].rows), &frames->array[i]);
   return good;
 }
 
 /* Create the fields of the points, or of the cells, and the offsets of their steps. */
-static bool make_fields(hdf5_frames *frames, bool is_by_cell, const hdf5_field *field)
+static bool make_fields(hdf5_frames *frames, bool is_by_cell, const hdf5_grid *grid,
+                        const hdf5_field *field)
 {
+  const int64_t rows = chunk_of(is_by_cell ? grid->cells : grid->points);
   const hid_t data = make_group(frames->root, is_by_cell ? "CellData" : "PointData"),
               offsets = make_group(frames->steps,
                                    is_by_cell ? "CellDataOffsets" : "PointDataOffsets");
@@ -131,7 +139,7 @@ static bool make_fields(hdf5_frames *frames, bool is_by_cell, const hdf5_field *
   for (int i = 0; i < frames->fields && good; i++) {
     if (field[i].is_by_cell != is_by_cell) continue;
     const int width = field[i].components > 1 ? field[i].components : 0;
-    good = h5_array_create(data, field[i].name, H5T_NATIVE_DOUBLE, width, NUMBERS_AT_ONCE,
+    good = h5_array_create(data, field[i].name, H5T_NATIVE_DOUBLE, width, rows,
                            &frames->field[i]) &&
            h5_array_create(offsets, field[i].name, H5T_NATIVE_INT64, 0, STEPS_AT_ONCE,
                            &frames->field_offset[i]);
@@ -142,7 +150,7 @@ static bool make_fields(hdf5_frames *frames, bool is_by_cell, const hdf5_field *
 }
 
 static bool make(hdf5_frames *frames, const char *path, const hdf5_head *head,
-                 const hdf5_field *field)
+                 const hdf5_grid *grid, const hdf5_field *field)
 {
   static const int64_t version[] = {2, 0}, none = 0;
   frames->file = h5_create(path);
@@ -153,12 +161,12 @@ static bool make(hdf5_frames *frames, const char *path, const hdf5_head *head,
     return false;
   frames->steps = make_group(frames->root, "Steps");
   return frames->steps >= 0 && h5_put_wholes(frames->steps, steps_name, 1, &none) &&
-         make_arrays(frames) && make_fields(frames, false, field) &&
-         make_fields(frames, true, field) && h5_start(frames->file);
+         make_arrays(frames, grid) && make_fields(frames, false, grid, field) &&
+         make_fields(frames, true, grid, field) && h5_start(frames->file);
 }
 
-hdf5_frames *stored_frames_create(const char *path, const hdf5_head *head, int fields,
-                                  const hdf5_field *field)
+hdf5_frames *stored_frames_create(const char *path, const hdf5_head *head, const hdf5_grid *grid,
+                                  int fields, const hdf5_field *field)
 {
   hdf5_frames *frames = calloc(1, sizeof *frames);
   if (frames != NULL) {
@@ -166,7 +174,7 @@ hdf5_frames *stored_frames_create(const char *path, const hdf5_head *head, int f
     frames->field_offset = calloc((size_t)fields + 1, sizeof *frames->field_offset);
     if (frames->field != NULL && frames->field_offset != NULL) {
       frames->fields = fields;
-      return make(frames, path, head, field) ? frames : discard(frames);
+      return make(frames, path, head, grid, field) ? frames : discard(frames);
     }
   }
   (void)h5_refuse("out of memory");

@@ -190,6 +190,46 @@ static dvi_force one_point_force_of(const dvi_force *declared)
                      .user = (void *)declared};
 }
 
+static int one_point_rows(double t, const double *q, double *phi, void *user)
+{
+  const dvi_holonomic *own = user;
+  return own->value_batch ? own->value_batch(1, &t, q, phi, own->user)
+                          : own->value(t, q, phi, own->user);
+}
+
+static int one_point_row_gradients(double t, const double *q, double *phi_q, void *user)
+{
+  const dvi_holonomic *own = user;
+  return own->gradient_batch ? own->gradient_batch(1, &t, q, phi_q, own->user)
+                             : own->gradient(t, q, phi_q, own->user);
+}
+
+static int one_point_row_hessian(double t, const double *q, const double *w, double *phi_w_qq,
+                                 void *user)
+{
+  const dvi_holonomic *own = user;
+  return own->hessian(t, q, w, phi_w_qq, own->user);
+}
+
+static int one_point_row_rate(double t, const double *q, double *phi_t, void *user)
+{
+  const dvi_holonomic *own = user;
+  return own->rate(t, q, phi_t, own->user);
+}
+
+static dvi_holonomic one_point_holonomic(const dvi_holonomic *declared)
+{
+  dvi_holonomic made = *declared;
+  made.value = one_point_rows;
+  made.gradient = one_point_row_gradients;
+  made.value_batch = NULL;
+  made.gradient_batch = NULL;
+  made.hessian = declared->hessian ? one_point_row_hessian : NULL;
+  made.rate = declared->rate ? one_point_row_rate : NULL;
+  made.user = (void *)declared;
+  return made;
+}
+
 static dvi_potential one_point_potential(const dvi_potential *declared)
 {
   return (dvi_potential){
@@ -229,13 +269,18 @@ dvi_status problem_one_point(problem *made)
   dvi_potential *potentials = keep_array(made, terms.potentials, terms.potential_count,
                                          sizeof *potentials, &lost);
   dvi_force *forces = keep_array(made, terms.forces, terms.force_count, sizeof *forces, &lost);
+  dvi_holonomic *holonomics = keep_array(made, terms.holonomics, terms.holonomic_count,
+                                         sizeof *holonomics, &lost);
   if (lost) return DVI_NO_MEMORY;
+  for (int k = 0; k < terms.holonomic_count; k++)
+    holonomics[k] = one_point_holonomic(&made->terms->holonomics[k]);
   for (int k = 0; k < terms.potential_count; k++)
     potentials[k] = one_point_potential(&made->terms->potentials[k]);
   for (int k = 0; k < terms.force_count; k++)
     forces[k] = one_point_force_of(&made->terms->forces[k]);
   terms.potentials = potentials;
   terms.forces = forces;
+  terms.holonomics = holonomics;
   dvi_lagrangian lagrangian;
   if (terms.lagrangian) {
     lagrangian = one_point_lagrangian(terms.lagrangian);

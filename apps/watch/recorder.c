@@ -302,7 +302,8 @@ static const char *column_name_at(int k, const void *list)
   return k < columns->count ? columns->column[k].name : NULL;
 }
 
-/* Open the rows. Those of a resumed run may go on in the file of the run before it. */
+/* Open the rows. Those of a resumed run may go on in the file of the run before it. The steps of
+ * methods that choose them are not counted from t = 0. */
 static bool open_rows(recorder *r, const dvi_integrator *integrator)
 {
   const run_request *request = r->request;
@@ -315,7 +316,7 @@ static bool open_rows(recorder *r, const dvi_integrator *integrator)
       .t = r->t_start,
       .direction = request->t_end < r->t_start ? -1 : 1,
       .gap = is_counted ? (double)request->every * fabs(request->h) * (1 + 1e-9) : HUGE_VAL,
-      .has_row = r->step % request->every == 0};
+      .has_row = r->step % request->every == 0 && (!r->chooses || request->every == 1)};
   r->frames.head = &r->head.rows;
   return row_output_open(&r->out, request->out, &r->head.rows,
                          request->resume != NULL && !request->final ? &state : NULL);

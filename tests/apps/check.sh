@@ -1,9 +1,6 @@
 # The tests of the command source this file. It counts the assertions that fail. The first argument
 # of a test is the dvi binary.
 dvi=$1
-# On Debian 13 UCX, which comes along with SUNDIALS, takes SIGHUP for its own debugging. This
-# setting leaves the signal to the tests.
-export UCX_DEBUG_SIGNO=0
 failures=0
 folder=$(mktemp -d) || exit 1
 trap 'rm -rf "$folder"' EXIT

@@ -95,7 +95,7 @@ for page in README.md docs/tutorial.md docs/command.md docs/limits.md docs/guide
   docs/theory.md docs/problems.md \
   docs/trust.md docs/adaptive.md docs/oscillations.md docs/shooting-studies.md docs/paths.md \
   docs/scenes.md $machines docs/cookbook.md docs/scene-errors.md \
-  $(cd "$top" && find docs/methods docs/fields -name '*.md' | sort); do
+  $(cd "$top" && find docs/methods docs/fields docs/tools -name '*.md' | sort); do
   split "$top/$page"
   n=1
   whole=1

@@ -18,65 +18,22 @@ pc=$(find "$prefix" -name dvi.pc)
 if [ -z "$config" ] || [ -z "$pc" ]; then fail "no dviConfig.cmake or no dvi.pc"; fi
 if grep -q "$work/first" "$config" "$pc"; then fail "the package files name the first prefix"; fi
 
-configure() {
-  "$cmake" -S "$source/consumer" -B "$work/$1" -DCMAKE_PREFIX_PATH="$prefix" \
-    -DCMAKE_C_COMPILER="$compiler" -DDVI_WANTED="$2" >"$work/log" 2>&1
-}
-
-say "find_package(dvi $version)"
-configure cmake "$version" || { cat "$work/log"; fail "the package was not found"; }
-"$cmake" --build "$work/cmake" >"$work/log" 2>&1 || {
+say "SUNDIALS, loaded on demand"
+helper=$(find "$prefix" -name 'libdvi-sundials.so.?.?')
+[ -n "$helper" ] || fail "the library that loads SUNDIALS is not there"
+orbit() { "$prefix/bin/dvi" run kepler --h 0.1 --t-end 1 --method "$1" >"$work/log" 2>&1; }
+mv "$helper" "$helper.away"
+orbit galerkin || {
   cat "$work/log"
-  fail "the consumer does not build"
+  fail "a run without SUNDIALS asks for it"
 }
-for form in shared static; do
-  [ "$("$work/cmake/$form")" = "$version" ] || fail "$form: the consumer does not run"
-done
-
-say "find_package(dvi 99) must fail"
-if configure wrong 99; then fail "version 99 was found"; fi
-grep -q "version: $version" "$work/log" || {
+if orbit galerkin:solver=kinsol ||
+  ! grep -q 'SUNDIALS cannot be loaded: libdvi-sundials' "$work/log"; then
   cat "$work/log"
-  fail "refused, but not for the version"
-}
-
-say "pkg-config"
-PKG_CONFIG_PATH=$(dirname "$pc")
-export PKG_CONFIG_PATH
-[ "$(pkg-config --modversion dvi)" = "$version" ] || fail "pkg-config gives another version"
-if pkg-config --exists 'dvi >= 99'; then fail "pkg-config has version 99"; fi
-# The words of pkg-config are meant to be split.
-# shellcheck disable=SC2046
-"$compiler" -std=c11 "$source/consumer/main.c" -o "$work/plain" $(pkg-config --cflags --libs dvi) \
-  -Wl,-rpath,"$(pkg-config --variable=libdir dvi)"
-"$work/plain" >"$work/log" || fail "the program that pkg-config built does not run"
-# shellcheck disable=SC2046
-"$compiler" -std=c11 "$source/consumer/main.c" -o "$work/plain_static" $(pkg-config --cflags dvi) \
-  "$(pkg-config --variable=libdir dvi)/libdvi.a" \
-  $(pkg-config --static --libs-only-l dvi | sed 's/-ldvi\( \|$\)//')
-"$work/plain_static" >"$work/log" || fail "the program with the static library does not run"
-
-say "the command"
-"$prefix/bin/dvi" --help >"$work/log" || { cat "$work/log"; fail "dvi --help does not work"; }
-"$prefix/bin/dvi" list methods >"$work/log" || { cat "$work/log"; fail "dvi list does not work"; }
-
-if [ -n "$(find "$prefix" -name dvi_hdf5.so)" ]; then
-  "$prefix/bin/dvi" run kepler --method verlet --h 0.1 --t-end 1 --out "$work/rows.h5" \
-    2>"$work/log" || { cat "$work/log"; fail "the installed command writes no HDF5"; }
+  fail "no sentence on a SUNDIALS that cannot be loaded"
 fi
+mv "$helper.away" "$helper"
 
-say "scenes and pages"
-"$prefix/bin/dvi" check "$prefix/share/dvi/scenes/kepler.yaml" >"$work/log" 2>&1 || {
-  cat "$work/log"
-  fail "an installed scene does not run"
-}
-pages=$prefix/share/doc/dvi
-[ -s "$pages/docs/pictures/cart.svg" ] || fail "the pages are not there"
-find "$pages" -name '*.md' | while read -r page; do
-  grep -o ']([^)# ]*' "$page" | sed 's/..//' | grep -v -e '^$' -e '^[a-z]*:' |
-    while read -r link; do
-    [ -e "$(dirname "$page")/$link" ] || echo "${page#"$pages"/}: $link"
-  done
-done >"$work/log"
-[ ! -s "$work/log" ] || { cat "$work/log"; fail "links of the pages lead nowhere"; }
+[ -s "$prefix/share/doc/dvi/docs/pictures/cart.svg" ] || fail "the pages are not there"
+sh "$source/installed.sh" "$prefix" "$version" "$compiler" "$cmake"
 say "all is well"

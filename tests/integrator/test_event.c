@@ -466,6 +466,7 @@ END_TEST
 
 SUITE(event)
 {
+  tcase_add_checked_fixture(tests, make_folder, remove_folder);
   tcase_add_checked_fixture(tests, set_up, tear_down);
   tcase_add_loop_test(tests, zeros_of_an_oscillator_are_where_theory_says, 0, 3);
   tcase_add_test(tests, directions_are_those_of_the_run_also_backward);

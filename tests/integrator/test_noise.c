@@ -272,6 +272,7 @@ END_TEST
 
 SUITE(noise)
 {
+  tcase_add_checked_fixture(tests, make_folder, remove_folder);
   tcase_add_loop_test(tests, members_have_the_bits_of_single_runs_with_their_streams, 0,
                       2 * METHODS);
   tcase_add_test(tests, members_are_computed_side_by_side_where_masses_are_diagonal);

@@ -84,10 +84,42 @@ START_TEST(matrices_far_from_one_are_refused)
 }
 END_TEST
 
+/* Fills those of several members, of which one has a pivot far from 1 if it is told. */
+static void fill_members(int n, int lost, dvi__abreast *A)
+{
+  double one[MOST_NEAR_ONE * MOST_NEAR_ONE];
+  for (int lane = 0; lane < DVI__ABREAST; lane++) {
+    fill_matrix(n, n, (0.1 + 0.1 * lane) / n, lane == lost ? 100 : 1, one);
+    for (int i = 0; i < n * n; i++) A[i][lane] = one[i];
+  }
+}
+
+START_TEST(members_have_the_bits_of_one_alone)
+{
+  const int n = 2 * _i, stride = dvi__near_one_stride(n), lost = _i % 2;
+  static dvi__abreast A[MOST_NEAR_ONE * MOST_NEAR_ONE];
+  double one[MOST_NEAR_ONE * MOST_NEAR_ONE];
+  int regular[DVI__ABREAST];
+  for (int lane = 0; lane < DVI__ABREAST; lane++) regular[lane] = 1;
+  fill_members(n, lost, A);
+  dvi__near_one_invert_abreast(n, A, regular);
+  for (int lane = 0; lane < DVI__ABREAST; lane++) {
+    ck_assert_int_eq(regular[lane], lane != lost);
+    fill_matrix(n, stride, (0.1 + 0.1 * lane) / n, lane == lost ? 100 : 1, one);
+    ck_assert_int_eq(dvi__near_one_invert(n, one), regular[lane]);
+    for (int at = 0; at < n * n && regular[lane]; at++) {
+      const double member = A[at][lane];
+      ck_assert_mem_eq(&member, &one[at / n * stride + at % n], sizeof member);
+    }
+  }
+}
+END_TEST
+
 SUITE(small_inverse)
 {
   tcase_add_loop_test(tests, a_matrix_times_its_inverse_is_one, 1, MOST + 1);
   tcase_add_loop_test(tests, near_one_there_is_no_exchange, 1, MOST_NEAR_ONE + 1);
+  tcase_add_loop_test(tests, members_have_the_bits_of_one_alone, 1, MOST_NEAR_ONE / 2 + 1);
   tcase_add_test(tests, the_sign_is_that_of_the_determinant);
   tcase_add_test(tests, matrices_far_from_one_are_refused);
 }

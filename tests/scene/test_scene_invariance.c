@@ -1,6 +1,7 @@
 /* Translations and rotations that are found on a scene's expressions, and those that are nearly
- * there and are not. */
+ * there and are not. Points that definitions give. */
 #include <dvi/scene.h>
+#include <math.h>
 #include <string.h>
 
 #include "support/suite.h"
@@ -86,8 +87,42 @@ START_TEST(what_turns_is_not_looked_at)
 }
 END_TEST
 
+/* A pendulum on a cart, whose pivot moves in time, in a scene with definitions that are none. */
+START_TEST(definitions_of_places_are_points)
+{
+  const double q[] = {0.5, 0.3};
+  double x[3];
+  dvi_scene_point bob, tip, none = {.size = 7};
+  dvi_scene *cart = read_scene(
+      "parameters: {l: 2}\ncoordinates: {s: scalar, a: scalar}\ndefinitions:\n  fixed: [1, 2]\n"
+      "  height: -l*cos(a)\n  bob: '[s + l*sin(a), height]'\n  speed: bob'\n"
+      "  tip: '[2*bob[1], t, a]'\n  four: '[s, a, s, a]'\n"
+      "lagrangian: s'^2/2 + dot(speed, speed)/2 - height\ninitial: {s: 0, a: 1}\n" RUN);
+  ck_assert_int_eq(dvi_scene_point_of(cart, 0, &bob), DVI_OK);
+  ck_assert_int_eq(dvi_scene_point_of(cart, 1, &tip), DVI_OK);
+  ck_assert_str_eq(bob.name, "bob");
+  ck_assert_str_eq(tip.name, "tip");
+  ck_assert_int_eq(bob.size, 2);
+  ck_assert_int_eq(tip.size, 3);
+  for (int k = 0; k < 2; k++) ck_assert_int_eq(bob.value(0, q, NULL, &x[k], bob.user[k]), 0);
+  ck_assert_double_eq_tol(x[0], 0.5 + 2 * sin(0.3), 1e-15);
+  ck_assert_double_eq_tol(x[1], -2 * cos(0.3), 1e-15);
+  for (int k = 0; k < 3; k++) ck_assert_int_eq(tip.value(4, q, NULL, &x[k], tip.user[k]), 0);
+  ck_assert_double_eq_tol(x[0], 1 + 4 * sin(0.3), 1e-15);
+  ck_assert_double_eq(x[1], 4);
+  ck_assert_double_eq(x[2], 0.3);
+  ck_assert_int_eq(dvi_scene_point_of(cart, 2, &none), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_scene_point_of(cart, -1, &none), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_scene_point_of(cart, 0, NULL), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_scene_point_of(NULL, 0, &none), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(none.size, 7);
+  dvi_scene_destroy(&cart);
+}
+END_TEST
+
 SUITE(scene_invariance)
 {
   tcase_add_loop_test(tests, what_leaves_the_lagrangian_as_it_is_is_found, 0, KNOWN);
   tcase_add_test(tests, what_turns_is_not_looked_at);
+  tcase_add_test(tests, definitions_of_places_are_points);
 }

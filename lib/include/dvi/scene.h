@@ -97,6 +97,16 @@ typedef struct dvi_scene_declared {
   int is_complex; /**< not 0 if it is */
 } dvi_scene_declared;
 
+/** A point that moves with the coordinates: a definition of 2 or 3 numbers without velocities and
+ *  momenta. */
+typedef struct dvi_scene_point {
+  const char *name;
+  int size; /**< 2 or 3 */
+  /** number k of the point, with user[k], as in dvi_invariant. p may be NULL */
+  int (*value)(double t, const double *q, const double *p, double *x, void *user);
+  void *user[3];
+} dvi_scene_point;
+
 /** A number high + low, with more digits than a double has. high is the double nearest to it. */
 typedef struct dvi_pair {
   double high, low;
@@ -277,6 +287,14 @@ const char *dvi_scene_momentum(const dvi_scene *scene, int i);
 /** Return the number of bodies if the state is bodies of a plane or of space (one family of vectors
  *  of 2 or 3 coordinates), else 0. */
 int dvi_scene_bodies(const dvi_scene *scene);
+
+/** Give point i of a scene without fields, in the order of its definitions. Each call derives its
+ *  functions anew, which the scene owns. It is for one thread, while no other uses the scene.
+ *
+ *  @retval DVI_BAD_ARGUMENT  there is no such point
+ *  @retval DVI_BAD_SIZE      a limit of docs/scenes.md is passed
+ *  @retval DVI_NO_MEMORY     memory could not be allocated */
+dvi_status dvi_scene_point_of(dvi_scene *scene, int i, dvi_scene_point *point);
 
 /** Return the plan of the scene's run. Owned by the scene. */
 const dvi_scene_plan *dvi_scene_plan_of(const dvi_scene *scene);

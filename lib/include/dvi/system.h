@@ -274,28 +274,28 @@ typedef struct dvi_force {
   void *user;
 } dvi_force;
 
+enum { DVI_HOLONOMIC_POINTS = 64 }; /**< most points in a batch of holonomic constraints */
+
 /** Holonomic constraints phi(t,q) = 0 of some rows, such as a rod, a rail or a joint (dvi/joint.h).
  *
  *  With factors phi is a function of all stored coordinates, of any smooth continuation off the
- *  manifold, as potentials are. Rows may depend on others, if they do so all along the motion
- *  (docs/mechanics/constraints.md). The callbacks have the one-point shape alone. */
+ *  manifold, as potentials are. Rows may be dependent (docs/mechanics/constraints.md). */
 typedef struct dvi_holonomic {
   const char *name; /**< copied. Used in messages */
   int count;        /**< number of rows, at least 1 */
-  /** phi [count]. Required. */
+  /** phi [count]. Required (or value_batch). */
   int (*value)(double t, const double *q, double *phi, void *user);
-  /** The gradients in the order of the pattern `gradients`, which has n rows and `count` columns.
-   *  Column a holds d phi_a/dq. Required. */
+  /** d phi_a/dq as column a of the pattern `gradients`. Required (or gradient_batch). */
   int (*gradient)(double t, const double *q, double *phi_q, void *user);
-  /** The Hessian of the function phi.w, w [count] fixed, in the order of the pattern `qq`.
-   *  Default: differences of the gradients. */
+  /** The Hessian of phi.w, w [count] fixed, in the order of `qq`. Default: it is differenced. */
   int (*hessian)(double t, const double *q, const double *w, double *phi_w_qq, void *user);
   /** The rates d phi/dt [count] at fixed q. Default: the constraints do not depend on time. */
   int (*rate)(double t, const double *q, double *phi_t, void *user);
   dvi_pattern gradients, qq;
   void *user;
-  /** [count] names of the rows in messages. Copied. Default: the name, with a row's number */
-  const char *const *row_names;
+  const char *const *row_names; /**< [count], copied. Default: the name with a row's number */
+  int (*value_batch)(int points, const double *t, const double *q, double *phi, void *user);
+  int (*gradient_batch)(int points, const double *t, const double *q, double *phi_q, void *user);
 } dvi_holonomic;
 
 /** Nonholonomic constraints A(t,q) v + a(t,q) = 0, of wheels and blades. A start refuses dependent

@@ -13,7 +13,6 @@
 #include "system/dynamics/constrained_hamiltonian.h"
 
 #include <string.h>
-#include <sunmatrix/sunmatrix_dense.h>
 
 #include "core/memory.h"
 #include "core/status.h"

@@ -12,7 +12,6 @@
 #include <float.h>
 #include <math.h>
 #include <string.h>
-#include <sunmatrix/sunmatrix_dense.h>
 
 #include "core/memory.h"
 #include "core/status.h"

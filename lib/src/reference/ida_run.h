@@ -2,7 +2,6 @@
  * settings of a run, and the run. */
 #ifndef DVI_REFERENCE_IDA_RUN_H
 #define DVI_REFERENCE_IDA_RUN_H
-#include <ida/ida.h>
 
 #include "reference/run.h"
 

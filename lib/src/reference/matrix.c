@@ -1,8 +1,4 @@
 /* SUNDIALS matrices and direct solvers, written column by column. */
-#include <sunlinsol/sunlinsol_dense.h>
-#include <sunlinsol/sunlinsol_klu.h>
-#include <sunmatrix/sunmatrix_dense.h>
-#include <sunmatrix/sunmatrix_sparse.h>
 
 #include "reference/run.h"
 

@@ -4,11 +4,7 @@
  * the multiplier eliminated. Factors have the lifted equations, y = (kappa, p) (lift.h). Sources:
  * Hindmarsh et al. 2005, ACM TOMS 31:363, sec. 2.1 (CVODE), and Reynolds et al. 2023, ACM TOMS
  * 49:19 (ARKODE). */
-#include <arkode/arkode_arkstep.h>
-#include <cvode/cvode.h>
 #include <string.h>
-#include <sunlinsol/sunlinsol_spgmr.h>
-#include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
 #include "core/status.h"
 #include "reference/lift.h"

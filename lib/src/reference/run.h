@@ -2,11 +2,8 @@
 #ifndef DVI_REFERENCE_RUN_H
 #define DVI_REFERENCE_RUN_H
 #include <dvi/reference.h>
-#include <nvector/nvector_serial.h>
-#include <sundials/sundials_linearsolver.h>
-#include <sundials/sundials_matrix.h>
 
-#include "solve/sundials_compat.h"
+#include "solve/sundials.h"
 #include "system/evaluate/evaluator.h"
 
 typedef struct dvi__reference_run {

@@ -5,7 +5,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sundials/sundials_version.h>
 #include <time.h>
 
 #include "core/memory.h"
@@ -45,9 +44,7 @@ const char *dvi_reference_name(dvi_reference_code code)
 
 const char *dvi_reference_version(void)
 {
-  static _Thread_local char version[32];
-  if (SUNDIALSGetVersion(version, (int)sizeof version) != 0) return "unknown";
-  return version;
+  return SUNDIALS_VERSION;
 }
 
 static double cpu_time(void)
@@ -200,7 +197,7 @@ static dvi_status reference_reserve(dvi__reference_run *run, const double *q, co
   run->L_vv = DVI_NEW(double, entries_of(run, &run->system->vv));
   if (run->q == NULL || run->p == NULL || run->v == NULL || run->force == NULL ||
       run->multiplier == NULL || run->L_qq == NULL || run->L_qv == NULL || run->L_vv == NULL ||
-      dvi__sundials_context(&run->context) != 0)
+      dvi__sundials->new_context(&run->context) != 0)
     return dvi__reference_no_setup(run);
   return reserve_forces(run);
 }
@@ -216,6 +213,7 @@ static dvi_status reference_prepare(dvi__reference_run *run, const double *q, co
   if (run->system->terms & DVI__NOISE)
     return dvi__fail(DVI_UNSUPPORTED,
                      "the system declares noise, and this code solves equations without");
+  DVI_TRY(dvi__sundials_load());
   const int lifted = dynamics->equations == DVI__LIFTED;
   DVI_TRY(
       dvi__evaluator_create(run->system, 1, derivatives_of(run), &run->counters, &run->evaluator));

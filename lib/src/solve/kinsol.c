@@ -5,16 +5,14 @@
  * reuse old Jacobians, which shows as energy drift over long runs
  * (tests/solve/test_kinsol_drift.c). Therefore every tolerance is set here. */
 #include <float.h>
-#include <kinsol/kinsol.h>
 #include <math.h>
-#include <nvector/nvector_serial.h>
 #include <string.h>
 
 #include "core/memory.h"
 #include "core/status.h"
 #include "num/finite.h"
 #include "solve/solver_struct.h"
-#include "solve/sundials_compat.h"
+#include "solve/sundials.h"
 #include "solve/vector.h"
 
 struct dvi__kinsol {
@@ -169,12 +167,13 @@ static int kinsol_configure(dvi__kinsol *k)
 
 static dvi_status kinsol_create(dvi__solver *solver, int own, dvi__kinsol **kinsol)
 {
+  DVI_TRY(dvi__sundials_load());
   dvi__kinsol *k = *kinsol = DVI_NEW(dvi__kinsol, 1);
   if (k == NULL) return dvi__fail(DVI_NO_MEMORY, "KINSOL: no memory");
   k->solver = solver;
   k->own = own;
   k->unknowns = own ? own * solver->equations.own_unknowns : solver->equations.unknowns;
-  if (dvi__sundials_context(&k->context) == 0 && kinsol_create_vectors(k) &&
+  if (dvi__sundials->new_context(&k->context) == 0 && kinsol_create_vectors(k) &&
       kinsol_create_matrix(k) && kinsol_configure(k)) {
     N_VConst(0, k->x);
     N_VConst(1, k->x_scale);

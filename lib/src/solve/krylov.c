@@ -5,15 +5,13 @@
  * taken at creation. */
 #include "solve/krylov.h"
 
-#include <kinsol/kinsol.h>
 #include <math.h>
 #include <string.h>
-#include <sunlinsol/sunlinsol_spgmr.h>
 
 #include "core/memory.h"
 #include "core/status.h"
 #include "num/finite.h"
-#include "solve/sundials_compat.h"
+#include "solve/sundials.h"
 #include "solve/vector.h"
 
 /* Directions that GMRES keeps at least and at most, numbers in those beyond the least, restarts,
@@ -105,10 +103,13 @@ static int configure(dvi__krylov *k)
 
 dvi_status dvi__krylov_create(const dvi__smooth_equations *equations, dvi__krylov **made)
 {
+  *made = NULL;
+  DVI_TRY(dvi__sundials_load());
   dvi__krylov *k = *made = DVI_NEW(dvi__krylov, 1);
   if (k == NULL) return dvi__fail(DVI_NO_MEMORY, "KINSOL: no memory");
   k->equations = *equations;
-  if (dvi__sundials_context(&k->context) == 0 && make_vectors(k) && make_linear(k) && configure(k))
+  if (dvi__sundials->new_context(&k->context) == 0 && make_vectors(k) && make_linear(k) &&
+      configure(k))
     return DVI_OK;
   dvi__krylov_destroy(made);
   return dvi__fail(DVI_NO_MEMORY, "KINSOL: no memory for %d directions of %d unknowns",

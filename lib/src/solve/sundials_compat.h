@@ -1,9 +1,9 @@
-/* All differences between SUNDIALS 6.4 and 7.x.
+/* All differences between SUNDIALS 6.4 and 7.x but names (sundials.def).
  *
  * 7.0 gave SUNContext_Create a communicator of its own type and moved error handling from each
- * integrator to the context. 7.1 gave ARKODE's steppers one set of functions. The library never
- * prints, so SUNDIALS must not either. Its error handlers are replaced by one that discards, and
- * its logger, which warns past the handlers, is taken away. */
+ * integrator to the context. The library never prints, so SUNDIALS must not either. Its error
+ * handlers are replaced by one that discards, and its logger, which warns past the handlers, is
+ * taken away. */
 #ifndef DVI_SOLVE_SUNDIALS_COMPAT_H
 #define DVI_SOLVE_SUNDIALS_COMPAT_H
 #include <stddef.h>
@@ -71,19 +71,5 @@ static inline int dvi__sundials_context(SUNContext *context)
   if (silenced != 0) (void)SUNContext_Free(context);
   return silenced;
 }
-
-/* The names of 7.1 for ARKODE's functions, which <arkode/arkode_arkstep.h> declares. */
-#if !DVI__SUNDIALS_AT_LEAST(7, 1)
-#define ARKodeSStolerances ARKStepSStolerances
-#define ARKodeSetUserData ARKStepSetUserData
-#define ARKodeSetMaxNumSteps ARKStepSetMaxNumSteps
-#define ARKodeSetStopTime ARKStepSetStopTime
-#define ARKodeSetMinStep ARKStepSetMinStep
-#define ARKodeEvolve ARKStepEvolve
-#define ARKodeGetNumSteps ARKStepGetNumSteps
-#define ARKodeGetCurrentTime ARKStepGetCurrentTime
-#define ARKodeGetReturnFlagName ARKStepGetReturnFlagName
-#define ARKodeFree ARKStepFree
-#endif
 
 #endif

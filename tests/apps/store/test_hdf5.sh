@@ -5,7 +5,10 @@
 
 python=
 for candidate in python3 /usr/bin/python3; do
-  if "$candidate" -c 'import h5py' 2>/dev/null; then python=$candidate; break; fi
+  if "$candidate" -c 'import importlib.util as u, sys; sys.exit(not u.find_spec("h5py"))'; then
+    python=$candidate
+    break
+  fi
 done
 [ -n "$python" ] || { echo 'no python3 has h5py'; exit 77; }
 if ! "$dvi" run kepler --method verlet --h 0.1 --t-end 1 --out probe.h5 2>err; then
@@ -119,6 +122,9 @@ says err 'a file of HDF5 is no device and no pipe' 'a device'
 says err "^dvi: cannot write 'full.h5': File too large$" 'a full disk'
 [ "$(wc -l <err)" -eq 1 ] || fail 'one sentence about a full disk'
 no_trace 'failures'
+
+expect 1 'no CSV' spectrum whole.h5
+says err "'whole.h5' is a file of HDF5, and CSV is read here" 'no CSV'
 
 # A sweep is a table, and frames of fields are those of .vtu files.
 sweep='sweep kepler --method verlet --h 0.1 --t-end 1 --set e=0:0.5:3'

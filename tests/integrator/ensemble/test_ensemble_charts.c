@@ -71,8 +71,9 @@ END_TEST
 
 START_TEST(every_level_gives_these_bits)
 {
-  dvi__lanes_choose(_i / KINDS);
-  ck_assert_int_eq(compare(_i % KINDS, "lie-galerkin", 1), 0);
+  static const int kinds[] = {LINES_KIND, BODY_KIND, COUPLED_KIND};
+  dvi__lanes_choose(_i / 3);
+  ck_assert_int_eq(compare(kinds[_i % 3], "lie-galerkin", 1), 0);
 }
 END_TEST
 
@@ -90,13 +91,13 @@ END_TEST
 
 /* A direction with a weight, whose gradient fails, or is not a number, beyond a limit of q1. */
 typedef struct limits {
-  double retry_above, fail_above, nan_above;
+  double retry_above, fail_above, nan_above, weight;
 } limits;
 
 static int weight_value(double t, const double *q, double *V, void *user)
 {
-  (void)t, (void)user;
-  *V = q[2];
+  (void)t;
+  *V = ((const limits *)user)->weight * q[2];
   return 0;
 }
 
@@ -105,7 +106,7 @@ static int weight_gradient(double t, const double *q, double *V_q, void *user)
   const limits *own = user;
   (void)t;
   V_q[0] = V_q[1] = 0;
-  V_q[2] = q[0] > own->nan_above ? (double)NAN : 1;
+  V_q[2] = q[0] > own->nan_above ? (double)NAN : own->weight;
   return q[0] > own->fail_above ? -1 : q[0] > own->retry_above;
 }
 
@@ -134,7 +135,7 @@ static void make_limited(limits *own, body *model)
 START_TEST(members_that_fail_are_no_one_elses_matter)
 {
   const double never = 1e300, limit = .45;
-  limits own = {never, never, never};
+  limits own = {never, never, never, 1};
   body model;
   *(_i == 0 ? &own.retry_above : _i == 1 ? &own.fail_above : &own.nan_above) = limit;
   make_limited(&own, &model);
@@ -142,6 +143,43 @@ START_TEST(members_that_fail_are_no_one_elses_matter)
   const long failed = compare_members(&all, 1 + _i);
   ck_assert_msg(failed > 0 && failed < MEMBERS * STEPS / 2, "%ld", failed);
   destroy_body(&model);
+}
+END_TEST
+
+/* Members of two systems, half of them each, whose weights differ. */
+START_TEST(each_member_has_its_own_system)
+{
+  enum { HALF = 8, BOTH = 2 * HALF, TAKEN = 12 };
+  const double never = 1e300;
+  limits own[] = {{never, never, never, 1}, {never, never, never, 2}};
+  const dvi_system *systems[BOTH];
+  double q[3 * BOTH], v[3 * BOTH];
+  body models[2];
+  for (int s = 0; s < 2; s++) make_limited(&own[s], &models[s]);
+  for (int k = 0; k < BOTH; k++) {
+    systems[k] = models[k / HALF].system;
+    for (int i = 0; i < 3; i++) q[i * BOTH + k] = models[0].q[i];
+    for (int i = 0; i < 3; i++) v[i * BOTH + k] = speed_of(k) * models[0].v[i];
+  }
+  dvi_ensemble *e = create_ensemble(
+      NULL, "lie-galerkin",
+      (dvi_ensemble_options){.members = BOTH, .systems = systems, .threads = 1 + _i});
+  ck_assert(goes_side_by_side(e));
+  ck_assert_int_eq(dvi_ensemble_start_velocity(e, 0, q, v), DVI_OK);
+  ck_assert_int_eq(dvi_ensemble_advance(e, .05, TAKEN), DVI_OK);
+  ck_assert_int_eq(dvi_ensemble_state(e, NULL, q, v), DVI_OK);
+  for (int k = 0; k < BOTH; k++) {
+    dvi_integrator *alone = create_integrator(systems[k], "lie-galerkin");
+    double start[3];
+    for (int i = 0; i < 3; i++) start[i] = speed_of(k) * models[0].v[i];
+    ck_assert_int_eq(dvi_integrator_start_velocity(alone, 0, models[0].q, start), DVI_OK);
+    for (int i = 0; i < TAKEN; i++) ck_assert_int_eq(dvi_integrator_step(alone, .05), DVI_OK);
+    for (int i = 0; i < 3; i++)
+      ck_assert_mem_eq(&q[i * BOTH + k], dvi_integrator_q(alone) + i, sizeof(double));
+    dvi_integrator_destroy(&alone);
+  }
+  dvi_ensemble_destroy(&e);
+  for (int s = 0; s < 2; s++) destroy_body(&models[s]);
 }
 END_TEST
 
@@ -153,7 +191,7 @@ static void add(int sign, const dvi_counters *some, dvi_counters *sum)
   for (size_t i = 0; i < sizeof *sum / sizeof(long); i++) to[i] += sign * from[i];
 }
 
-enum { COUNTED = 20 };
+enum { COUNTED = 16 };
 
 /* Adds what steps 2 to COUNTED of member k count alone. */
 static void count_alone(const twins *all, int k, double h, dvi_counters *sum)
@@ -216,9 +254,10 @@ SUITE(ensemble_charts)
 {
   tcase_add_checked_fixture(tests, NULL, use_best_level);
   tcase_add_loop_test(tests, members_have_the_bits_of_runs_alone, 0, KINDS * METHODS);
-  tcase_add_loop_test(tests, every_level_gives_these_bits, 0, KINDS * dvi__lanes_levels());
+  tcase_add_loop_test(tests, every_level_gives_these_bits, 0, 3 * dvi__lanes_levels());
   tcase_add_test(tests, members_that_turn_too_far_fail_alone);
   tcase_add_loop_test(tests, members_that_fail_are_no_one_elses_matter, 0, 3);
+  tcase_add_loop_test(tests, each_member_has_its_own_system, 0, 2);
   tcase_add_loop_test(tests, steps_count_what_they_count_alone, LINES_KIND, KINDS);
   tcase_add_loop_test(tests, other_steps_go_one_by_one, 0, 4);
 }

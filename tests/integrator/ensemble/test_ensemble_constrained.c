@@ -114,6 +114,7 @@ typedef struct rods {
   double swell, rate; /* the first rod's square is 1 + swell sin(rate t) */
   double retry_above; /* the gradient fails above this height of the first bob */
   double weight[2];   /* of the bobs' potentials */
+  int batches;        /* whether the constraints are declared for batches */
 } rods;
 
 static int weight(double t, const double *x, double *V, void *user)
@@ -159,6 +160,37 @@ static int phi_rate(double t, const double *x, double *phi_t, void *user)
   return 0;
 }
 
+/* The same in batches, whose calls are counted. */
+static long calls;
+
+static int phi_batch(int points, const double *t, const double *x, double *value, void *user)
+{
+  int returned = 0;
+  calls++;
+  ck_assert_int_le(points, DVI_HOLONOMIC_POINTS);
+  for (int k = 0; k < points && returned == 0; k++) {
+    double point[N], both[2];
+    for (int i = 0; i < N; i++) point[i] = x[i * points + k];
+    returned = phi(t[k], point, both, user);
+    for (int a = 0; a < 2; a++) value[a * points + k] = both[a];
+  }
+  return returned;
+}
+
+static int phi_gradient_batch(int points, const double *t, const double *x, double *phi_q,
+                              void *user)
+{
+  int returned = 0;
+  calls++;
+  for (int k = 0; k < points && returned == 0; k++) {
+    double point[N], entries[6];
+    for (int i = 0; i < N; i++) point[i] = x[i * points + k];
+    returned = phi_gradient(t[k], point, entries, user);
+    for (int e = 0; e < 6; e++) phi_q[e * points + k] = entries[e];
+  }
+  return returned;
+}
+
 /* A second declaration of the second rod. */
 static int again(double t, const double *x, double *value, void *user)
 {
@@ -184,8 +216,10 @@ static dvi_system *create_rods(rods *own, dvi_mass mass, int rows)
   const dvi_holonomic holonomics[] = {
       {.name = "rods",
        .count = 2,
-       .value = phi,
-       .gradient = phi_gradient,
+       .value = own->batches ? NULL : phi,
+       .gradient = own->batches ? NULL : phi_gradient,
+       .value_batch = own->batches ? phi_batch : NULL,
+       .gradient_batch = own->batches ? phi_gradient_batch : NULL,
        .rate = own->swell != 0 ? phi_rate : NULL,
        .gradients = {start, row},
        .user = own},
@@ -206,7 +240,7 @@ static const double hanging[N] = {0, -1, 0, -2}, swing[N] = {6, 0, 15, 0}, masse
 START_TEST(constraints_that_depend_on_time_have_their_rates)
 {
   static const double rest[N] = {0.6, -0.8, 1.4, -1.4}, none[N] = {0};
-  rods own = {.swell = 0.3, .rate = 2, .retry_above = 9, .weight = {9.8, 29.4}};
+  rods own = {.swell = 0.3, .rate = 2, .retry_above = 9, .weight = {9.8, 29.4}, .batches = _i / 3};
   dvi_system *system = create_rods(&own, (dvi_mass){.diagonal = masses}, 2);
   double start[N], moved[N] = {0};
   /* phi_t + G v = 0 by a velocity along the first rod */
@@ -219,7 +253,7 @@ START_TEST(constraints_that_depend_on_time_have_their_rates)
     v[0 * MEMBERS + k] += 0.8 * k / MEMBERS, v[1 * MEMBERS + k] += 0.6 * k / MEMBERS;
     v[2 * MEMBERS + k] += 0.8 * k / MEMBERS, v[3 * MEMBERS + k] += 0.6 * k / MEMBERS;
   }
-  (void)compare_members(system, methods[_i], 0.02, 20);
+  (void)compare_members(system, methods[_i % 3], 0.02, 20);
   dvi_system_destroy(&system);
 }
 END_TEST
@@ -237,9 +271,10 @@ END_TEST
 
 START_TEST(a_member_that_fails_stays_and_the_others_go_on)
 {
-  rods own = {.retry_above = 0.5, .weight = {9.8, 29.4}};
+  const char *method = methods[_i % 3];
+  rods own = {.retry_above = 0.5, .weight = {9.8, 29.4}, .batches = _i / 3};
   dvi_system *system = create_rods(&own, (dvi_mass){.diagonal = masses}, 2);
-  dvi_ensemble *e = create_ensemble(system, methods[_i],
+  dvi_ensemble *e = create_ensemble(system, method,
                                     (dvi_ensemble_options){.members = MEMBERS, .block = 8});
   long sum[8] = {0};
   int failed = 0;
@@ -249,12 +284,79 @@ START_TEST(a_member_that_fails_stays_and_the_others_go_on)
   check_words("rods: the gradient callback");
   for (int k = 0; k < MEMBERS; k++) {
     failed += dvi_ensemble_status(e, k) == DVI_CALLBACK_RETRY;
-    same_as_alone(e, system, methods[_i], k, 0.01, 60, sum);
+    same_as_alone(e, system, method, k, 0.01, 60, sum);
   }
   ck_assert_int_gt(failed, 0);
   ck_assert_int_lt(failed, MEMBERS);
   dvi_ensemble_destroy(&e);
   dvi_system_destroy(&system);
+}
+END_TEST
+
+/* A step of all members takes as many calls as that of the member with the most iterations, and
+ * twice as many for more members than a batch has. */
+START_TEST(members_share_calls)
+{
+  enum { MANY = 80, STEPS = 10 };
+  static double places[N * MANY], velocities[N * MANY];
+  rods own = {.retry_above = 9, .weight = {9.8, 29.4}, .batches = 1};
+  dvi_system *system = create_rods(&own, (dvi_mass){.diagonal = masses}, 2);
+  dvi_ensemble *e = create_ensemble(system, "verlet",
+                                    (dvi_ensemble_options){.members = MANY, .block = MANY});
+  for (int i = 0; i < N * MANY; i++) {
+    places[i] = hanging[i / MANY];
+    velocities[i] = 0.1 * swing[i / MANY] * (i % MANY) / MANY;
+  }
+  ck_assert_int_eq(dvi_ensemble_start_velocity(e, 0, places, velocities), DVI_OK);
+  calls = 0;
+  ck_assert_int_eq(dvi_ensemble_advance(e, 0.01, STEPS), DVI_OK);
+  ck_assert_int_le(calls, 2 * 5 * (STEPS + 1));
+  dvi_ensemble_destroy(&e);
+  dvi_system_destroy(&system);
+}
+END_TEST
+
+/* An element asks for all of its nodes at once, and has the bits of one that asks one by one. */
+START_TEST(nodes_of_an_element_share_calls)
+{
+  rods own[2] = {{.retry_above = 9, .weight = {9.8, 29.4}},
+                 {.retry_above = 9, .weight = {9.8, 29.4}, .batches = 1}};
+  dvi_counters counters;
+  double end[2][2 * N];
+  for (int s = 0; s < 2; s++) {
+    dvi_system *system = create_rods(&own[s], (dvi_mass){.diagonal = masses}, 2);
+    dvi_integrator *integrator = create_integrator(system, "galerkin:degree=4");
+    ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, hanging, swing), DVI_OK);
+    dvi_integrator_counters(integrator, &counters);
+    const long before = counters.values + counters.gradients;
+    calls = 0;
+    advance(integrator, 0.02, 10);
+    dvi_integrator_counters(integrator, &counters);
+    ck_assert_int_eq(calls > 0, s);
+    ck_assert_int_lt(3 * calls, counters.values + counters.gradients - before);
+    memcpy(end[s], dvi_integrator_q(integrator), N * sizeof(double));
+    memcpy(end[s] + N, dvi_integrator_p(integrator), N * sizeof(double));
+    dvi_integrator_destroy(&integrator);
+    dvi_system_destroy(&system);
+  }
+  ck_assert_mem_eq(end[0], end[1], sizeof end[0]);
+}
+END_TEST
+
+START_TEST(constraints_in_both_shapes_are_refused)
+{
+  rods own = {.retry_above = 9};
+  const dvi_holonomic both = {.name = "rods",
+                              .count = 1,
+                              .value = phi,
+                              .value_batch = phi_batch,
+                              .gradient = phi_gradient,
+                              .user = &own};
+  const dvi_system_terms terms = {
+      .dimension = N, .mass.scalar = 1, .holonomics = &both, .holonomic_count = 1};
+  dvi_system *made = NULL;
+  ck_assert_int_eq(dvi_system_create(&terms, &made), DVI_BAD_ARGUMENT);
+  check_words("rods");
 }
 END_TEST
 
@@ -320,9 +422,12 @@ END_TEST
 SUITE(ensemble_constrained)
 {
   tcase_add_loop_test(tests, members_have_the_bits_and_the_counts_of_runs_alone, 0, 6);
-  tcase_add_loop_test(tests, constraints_that_depend_on_time_have_their_rates, 0, 3);
+  tcase_add_loop_test(tests, constraints_that_depend_on_time_have_their_rates, 0, 6);
   tcase_add_loop_test(tests, members_that_renew_their_matrices_are_stepped_alone, 0, 2);
-  tcase_add_loop_test(tests, a_member_that_fails_stays_and_the_others_go_on, 0, 3);
+  tcase_add_loop_test(tests, a_member_that_fails_stays_and_the_others_go_on, 0, 6);
+  tcase_add_test(tests, members_share_calls);
+  tcase_add_test(tests, nodes_of_an_element_share_calls);
+  tcase_add_test(tests, constraints_in_both_shapes_are_refused);
   tcase_add_test(tests, members_with_dependent_rows_are_stepped_alone);
   tcase_add_test(tests, members_with_systems_of_their_own_have_their_constraints);
   tcase_add_test(tests, explain_says_which_way_is_taken);

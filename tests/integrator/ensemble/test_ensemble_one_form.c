@@ -11,9 +11,9 @@ enum { MEMBERS = 21, N = 2 };
 
 /* ---- systems ---- */
 
-/* alpha = (-q2 - beta q2^3/3, q1/4), H = cosh(q1) + q2^2/2. The gradient of alpha fails, or is no
- * number, beyond a limit of q1. With `singular` alpha = (-q2^2/2, q1/4), whose two-form is singular
- * at q2 = -1/4. */
+/* alpha = (-q2 - beta q2^3/3, q1/4), H = q1^2/2 + q1^4/8 + q2^2/2. The gradient of alpha fails, or
+ * is no number, beyond a limit of q1. With `singular` alpha = (-q2^2/2, q1/4), whose two-form is
+ * singular at q2 = -1/4. */
 typedef struct field {
   double beta, retry_above, fail_above, nan_above;
   int singular;
@@ -46,24 +46,25 @@ static int field_hessian(const double *q, const double *w, double *alpha_w_qq, v
   return 0;
 }
 
-static int hill_value(double t, const double *q, double *V, void *user)
+static int well_value(double t, const double *q, double *V, void *user)
 {
   (void)t, (void)user;
-  *V = cosh(q[0]) + 0.5 * q[1] * q[1];
+  *V = 0.5 * (q[0] * q[0] + q[1] * q[1]) + 0.125 * pow(q[0], 4);
   return 0;
 }
 
-static int hill_gradient(double t, const double *q, double *V_q, void *user)
+static int well_gradient(double t, const double *q, double *V_q, void *user)
 {
   (void)t, (void)user;
-  V_q[0] = sinh(q[0]), V_q[1] = q[1];
+  V_q[0] = q[0] + 0.5 * q[0] * q[0] * q[0];
+  V_q[1] = q[1];
   return 0;
 }
 
-static int hill_hessian(double t, const double *q, double *V_qq, void *user)
+static int well_hessian(double t, const double *q, double *V_qq, void *user)
 {
   (void)t, (void)user;
-  V_qq[0] = cosh(q[0]), V_qq[1] = V_qq[2] = 0, V_qq[3] = 1;
+  V_qq[0] = 1 + 1.5 * q[0] * q[0], V_qq[1] = V_qq[2] = 0, V_qq[3] = 1;
   return 0;
 }
 
@@ -96,13 +97,13 @@ static dvi_system *create_field(field *own, int with_gauge)
       .value = field_value, .gradient = field_gradient, .hessian = field_hessian, .user = own};
   const dvi_gauge gauge = {
       .gradient = gauge_gradient, .hessian = gauge_hessian, .third = gauge_third};
-  const dvi_potential hills[] = {
-      {.value = hill_value, .gradient = hill_gradient, .hessian = hill_hessian},
-      {.value = hill_value, .gradient = hill_gradient, .hessian = hill_hessian}};
+  const dvi_potential wells[] = {
+      {.value = well_value, .gradient = well_gradient, .hessian = well_hessian},
+      {.value = well_value, .gradient = well_gradient, .hessian = well_hessian}};
   const dvi_system_terms terms = {.dimension = N,
                                   .one_form = &alpha,
                                   .gauge = with_gauge ? &gauge : NULL,
-                                  .potentials = hills,
+                                  .potentials = wells,
                                   .potential_count = with_gauge ? 2 : 1,
                                   .autonomous = 1};
   ck_assert_msg(dvi_system_create(&terms, &made) == DVI_OK, "%s", dvi_last_error());
@@ -252,7 +253,7 @@ START_TEST(members_may_have_systems_of_their_own)
   for (int i = 0; i < 3; i++) made[i] = create_field(&own[i], 0);
   for (int k = 0; k < MEMBERS; k++) systems[k] = made[k < 10 ? 0 : k < 12 ? 1 : 2];
   spread_members(systems, 0.9);
-  for (int threads = 1; threads <= 3; threads++) (void)compare(systems, "vprk:nodes=2", threads);
+  for (int threads = 1; threads <= 2; threads++) (void)compare(systems, "vprk:nodes=2", threads);
   for (int i = 0; i < 3; i++) dvi_system_destroy(&made[i]);
 }
 END_TEST

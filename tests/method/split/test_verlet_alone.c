@@ -281,6 +281,7 @@ END_TEST
 
 SUITE(verlet_alone)
 {
+  tcase_add_checked_fixture(tests, make_folder, remove_folder);
   tcase_add_loop_test(tests, bits_and_counts_are_those_of_swept_steps, 0, 4);
   tcase_add_loop_test(tests, a_run_has_the_bits_of_its_steps, 0, 2);
   tcase_add_loop_test(tests, a_failure_is_that_of_swept_steps_and_leaves_no_trace, 0, 10);

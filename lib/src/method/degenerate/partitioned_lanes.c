@@ -1,4 +1,4 @@
-/* The partitioned step for members of an ensemble abreast (num/simd/abreast.h), eight at a time. It
+/* The partitioned step for members of an ensemble abreast (num/simd/abreast.h), a few at a time. It
  * is the way that most steps of partitioned_step.c take: Newton's method from a continued guess,
  * with one Jacobian, which is inverted, and fast convergence. Members for which that does not lead
  * to the end are left to dvi__partitioned_step. */

@@ -23,48 +23,50 @@ static void exchange(int count, int stride, double *a, double *b)
   }
 }
 
-static int largest_row(int n, const double *column, int from)
+/* Find the column from k on whose entry in row k is largest. */
+static int largest_column(int n, int k, const double *A)
 {
-  int row = from;
-  for (int i = from + 1; i < n; i++)
-    if (fabs(column[i]) > fabs(column[row])) row = i;
-  return row;
+  int column = k;
+  for (int j = k + 1; j < n; j++)
+    if (fabs(A[j * n + k]) > fabs(A[column * n + k])) column = j;
+  return column;
 }
 
 INLINE void subtract_multiple(int n, double factor, const double *restrict x, double *restrict y)
 {
-  for (int i = 0; i < n; i++) y[i] -= x[i] * factor;
+  for (int i = 0; i < n; i++) y[i] -= factor * x[i];
 }
 
-/* Take column k out of all others, and replace it by that of the inverse. */
-INLINE void eliminate_column(int n, int k, double *A)
+/* Replace column k by that of the inverse, and take it out of all others. The entries of row k are
+ * stored last, because a vector that is loaded after one of its numbers is stored waits. */
+INLINE void eliminate_row(int n, int k, double *A)
 {
   double *column = A + k * n;
   const double inverse = 1 / column[k];
+  for (int i = 0; i < n; i++) column[i] *= inverse;
+  column[k] = inverse;
   for (int j = 0; j < n; j++) {
     double *other = A + j * n;
-    const double factor = other[k] * inverse;
+    const double factor = other[k];
     if (j == k) continue;
     subtract_multiple(n, factor, column, other);
-    other[k] = factor;
+    other[k] = 0 - factor * inverse;
   }
-  for (int i = 0; i < n; i++) column[i] *= -inverse;
-  column[k] = inverse;
 }
 
 WIDE static int small_invert(int n, double *A)
 {
   int from[MOST], sign = 1;
   for (int k = 0; k < n; k++) {
-    const int row = from[k] = largest_row(n, A + k * n, k);
-    if (row != k) exchange(n, n, A + k, A + row);
+    const int column = from[k] = largest_column(n, k, A);
+    if (column != k) exchange(n, 1, A + k * n, A + column * n);
     const double pivot = A[k * n + k];
     if (!(fabs(pivot) >= DBL_MIN) || isinf(pivot)) return 0;
-    if ((row != k) ^ (pivot < 0)) sign = -sign;
-    eliminate_column(n, k, A);
+    if ((column != k) ^ (pivot < 0)) sign = -sign;
+    eliminate_row(n, k, A);
   }
   for (int k = n; k-- > 0;)
-    if (from[k] != k) exchange(n, 1, A + k * n, A + from[k] * n);
+    if (from[k] != k) exchange(n, n, A + k, A + from[k]);
   return sign;
 }
 

@@ -306,20 +306,22 @@ bool dvi__make_dissipation(dvi_scene *scene, dvi__scene_term *term, dvi_force *f
 
 /* ---- holonomic constraints: phi is the gradient of phi(t,q).w by w ---- */
 
-static int term_holonomic_value(double t, const double *q, double *phi, void *user)
+static int term_holonomic_value(int points, const double *t, const double *q, double *phi,
+                                void *user)
 {
   dvi__scene_term *term = user;
-  const double *x[DVI__BLOCKS] = {&t, q, NULL, term->none};
+  const double *x[DVI__BLOCKS] = {t, q, NULL, term->none};
   double *gradient[DVI__BLOCKS] = {[DVI__MULTIPLIERS] = phi};
-  return gradient_at(term, 1, x, gradient);
+  return gradient_at(term, points, x, gradient);
 }
 
-static int term_holonomic_gradient(double t, const double *q, double *phi_q, void *user)
+static int term_holonomic_gradient(int points, const double *t, const double *q, double *phi_q,
+                                   void *user)
 {
   dvi__scene_term *term = user;
-  const double *x[DVI__BLOCKS] = {&t, q, NULL, term->none};
+  const double *x[DVI__BLOCKS] = {t, q, NULL, term->none};
   double *values[DVI__PAIRS] = {[DVI__PAIR_QW] = phi_q};
-  return second_at(term, 1, x, values);
+  return second_at(term, points, x, values);
 }
 
 static int term_holonomic_hessian(double t, const double *q, const double *w, double *phi_w_qq,
@@ -483,10 +485,13 @@ bool dvi__make_holonomic(dvi_scene *scene, const char *name, dvi__scene_term *te
   int full;
   *holonomic = (dvi_holonomic){.name = name,
                                .count = term->count,
-                               .value = term_holonomic_value,
-                               .gradient = term_holonomic_gradient,
+                               .value_batch = term_holonomic_value,
+                               .gradient_batch = term_holonomic_gradient,
                                .hessian = term_holonomic_hessian,
                                .user = term};
+  term->none = dvi__arena_take(&scene->arena, (size_t)term->count * DVI_HOLONOMIC_POINTS,
+                               sizeof *term->none);
+  if (term->none == NULL) return dvi__scene_no_memory(scene);
   if (!prepare_large(scene, term, of_multipliers) ||
       !dvi__term_pattern(scene, term, DVI__PAIR_QW, &holonomic->gradients, &full) ||
       !dvi__term_pattern(scene, term, DVI__PAIR_QQ, &holonomic->qq, &full) ||
@@ -545,14 +550,24 @@ static int term_tangent(double t, const double *q, double *T, void *user)
   return second_at(term, 1, x, values);
 }
 
+static int term_gap(double t, const double *q, double *phi, void *user)
+{
+  return term_holonomic_value(1, &t, q, phi, user);
+}
+
+static int term_gap_gradient(double t, const double *q, double *phi_q, void *user)
+{
+  return term_holonomic_gradient(1, &t, q, phi_q, user);
+}
+
 bool dvi__make_contact(dvi_scene *scene, dvi__scene_term *gap, dvi__scene_term *tangent,
                        dvi_contact *contact)
 {
   dvi_holonomic phi;
   int full;
   if (!dvi__make_holonomic(scene, contact->name, gap, &phi)) return false;
-  contact->gap = phi.value;
-  contact->gradient = phi.gradient;
+  contact->gap = term_gap;
+  contact->gradient = term_gap_gradient;
   contact->rate = phi.rate;
   contact->gradients = phi.gradients;
   contact->user = gap;

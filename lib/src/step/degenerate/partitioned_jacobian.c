@@ -7,11 +7,7 @@
 #include "num/simd/width.h"
 #include "step/degenerate/partitioned_struct.h"
 #include "step/degenerate/stage_inverse.h"
-
-static const double *place_of_k0(const dvi__partitioned *p)
-{
-  return p->kick.at_mean ? p->mean : p->q0;
-}
+#include "system/evaluate/form_batches.h"
 
 static const double *place_of_k1(const dvi__partitioned *p)
 {
@@ -21,8 +17,9 @@ static const double *place_of_k1(const dvi__partitioned *p)
 static dvi_status hessians_at_ends(dvi__partitioned *p)
 {
   if (!p->kick.has_multiplier) return DVI_OK;
-  DVI_TRY(dvi__form_hessian(p->evaluator, place_of_k0(p), p->k0, p->qq0, p->qv0));
   p->has_gradients = !p->kick.at_mean;
+  DVI_TRY(p->kick.at_mean ? dvi__form_hessian(p->evaluator, p->mean, p->k0, p->qq0, p->qv0)
+                          : dvi__form_mixed_hessian(p->evaluator, p->q0, p->qv0));
   DVI_TRY(dvi__form_hessian(p->evaluator, place_of_k1(p), p->k1, p->qq1, p->qv1));
   if (p->kick.at_mean) return dvi__form_hessian(p->evaluator, p->q1, p->k1, p->qq_end, p->qv_end);
   memcpy(p->qv_end, p->qv1, (size_t)dvi__pattern_entries(&p->system->qv) * sizeof(double));

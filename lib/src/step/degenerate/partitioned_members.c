@@ -17,8 +17,8 @@ struct dvi__partitioned_members {
   int has_gradients; /* H_qv and qv1 have the gradients of alpha at the next residual's points */
   const abreast *q0, *p0, *carried; /* [n] */
   /* The numbers of dvi__partitioned with these names. */
-  abreast *t, *Q, *V, *L_q, *L_v, *H_qq, *H_qv, *k0, *k1, *K0, *K1, *dq, *q1, *alpha1, *qq0, *qv0,
-      *qq1, *qv1;
+  abreast *t, *Q, *V, *L_q, *L_v, *H_qq, *H_qv, *k0, *k1, *K0, *K1, *dq, *q1, *alpha1, *qv0, *qq1,
+      *qv1;
   abreast *numbers; /* all of them */
 };
 
@@ -40,9 +40,9 @@ static size_t members_lay_out(dvi__partitioned_members *m)
                qv = (size_t)dvi__pattern_entries(&system->qv);
   abreast **const array[] = {&m->t,    &m->Q,      &m->V,   &m->L_q, &m->L_v, &m->H_qq,
                              &m->H_qv, &m->k0,     &m->k1,  &m->K0,  &m->K1,  &m->dq,
-                             &m->q1,   &m->alpha1, &m->qq0, &m->qv0, &m->qq1, &m->qv1};
-  const size_t size[] = {s, n * s, n * s, n * s, n * s, qq * s, qv * s, n,  n,
-                         n, n,     n,     n,     n,     qq,     qv,     qq, qv};
+                             &m->q1,   &m->alpha1, &m->qv0, &m->qq1, &m->qv1};
+  const size_t size[] = {s, n * s, n * s, n * s, n * s, qq * s, qv * s, n, n,
+                         n, n,     n,     n,     n,     qv,     qq,     qv};
   size_t count = 0;
   for (size_t i = 0; i < sizeof size / sizeof *size; count += size[i++])
     *array[i] = m->numbers != NULL ? m->numbers + count : NULL;
@@ -186,15 +186,16 @@ WIDE static void fill_members_entries(const dvi__partitioned_members *m)
                          dvi__stage_inverse_members_entry(m->inverse, p->joint.row[e], j));
 }
 
-static dvi_status evaluate_members_hessians(dvi__partitioned_members *m)
+static dvi_status evaluate_members_hessians(dvi__partitioned_members *m,
+                                            const int going[DVI__ABREAST])
 {
   const int points = DVI__ABREAST * m->step->s;
   DVI_TRY(dvi__form_hessian_batch(m->evaluator, points, (double *)m->Q, (double *)m->V,
                                   (double *)m->H_qq, (double *)m->H_qv));
   DVI_TRY(dvi__subtract_potential_hessians(m->evaluator, points, (double *)m->t, (double *)m->Q,
                                            (double *)m->H_qq));
-  DVI_TRY(dvi__form_hessian_batch(m->evaluator, DVI__ABREAST, (const double *)m->q0,
-                                  (double *)m->k0, (double *)m->qq0, (double *)m->qv0));
+  DVI_TRY(dvi__form_batch(m->evaluator, DVI__ABREAST, going, (const double *)m->q0, NULL,
+                          (double *)m->qv0));
   return dvi__form_hessian_batch(m->evaluator, DVI__ABREAST, (double *)m->q1, (double *)m->k1,
                                  (double *)m->qq1, (double *)m->qv1);
 }
@@ -204,7 +205,7 @@ dvi_status dvi__partitioned_members_invert(dvi__partitioned_members *m, const dv
 {
   const dvi__partitioned *p = m->step;
   points_abreast(m, x);
-  DVI_TRY(evaluate_members_hessians(m));
+  DVI_TRY(evaluate_members_hessians(m, regular));
   fill_members_entries(m);
   dvi__stage_inverse_members_begin(m->inverse, p->s, p->b, regular);
   m->has_gradients = 1;

@@ -6,7 +6,7 @@
 #include "num/simd/small_inverse.h"
 #include "step/degenerate/stage_inverse_struct.h"
 
-enum { MOST = DVI__SMALL_INVERSE_MOST, STAGES = DVI__STAGE_LANES };
+enum { MOST = DVI__NEAR_ONE_MOST, STAGES = DVI__STAGE_LANES };
 
 typedef dvi__abreast abreast;
 

@@ -32,16 +32,19 @@
 
 struct dvi__constrained_rows {
   dvi__action *action;
-  int rows, entries;    /* of phi, and of the gradients of all rows */
-  dvi__pattern acting;  /* [n x rows], the first columns of rows_q */
-  double *chi, *beta;   /* [s + 1] */
-  double *psi, *bar;    /* [(s + 1)*s] psi_l(chi_k) and psi_l(chi_k) - psi_l(1), at k*s + l */
-  int knows_start;      /* phi_q has the gradients at the start of the element */
-  int knows_path;       /* and at all other nodes, of the path in X */
-  int dependent;        /* rows depend on others */
-  int sign;             /* of the determinant of one coordinate's Jacobian with one row */
-  double *X;            /* [(s + 1)*n] the nodes */
-  double *phi, *phi_q;  /* [all rows], [(s + 1)*entries] */
+  int rows, entries;   /* of phi, and of the gradients of all rows */
+  dvi__pattern acting; /* [n x rows], the first columns of rows_q */
+  double *chi, *beta;  /* [s + 1] */
+  double *psi, *bar;   /* [(s + 1)*s] psi_l(chi_k) and psi_l(chi_k) - psi_l(1), at k*s + l */
+  int knows_start;     /* phi_q has the gradients at the start of the element */
+  int knows_path;      /* and at all other nodes, of the path in X */
+  int dependent;       /* rows depend on others */
+  int sign;            /* of the determinant of one coordinate's Jacobian with one row */
+  double *X;           /* [(s + 1)*n] the nodes */
+  double *phi, *phi_q; /* [(s + 1)*all rows], [(s + 1)*entries] */
+  int in_batches;      /* callbacks take all nodes at once */
+  /* [s + 1], [(s + 1)*n], [(s + 1)*(all rows + entries)] a batch with its results */
+  double *times, *points, *results;
   double *size;         /* [rows] powers of two near the gradients at the start, inverted */
   double *w, *phi_w_qq; /* [all rows], [entries of rows_qq] */
   double *v, *impulse;  /* [n] */
@@ -58,8 +61,8 @@ static dvi_status rows_allocate(rows_term *x)
   const size_t n = (size_t)a->n, s = (size_t)a->s, nodes = s + 1,
                rows = (size_t)a->system->row_count, entries = (size_t)x->entries,
                curvature = (size_t)dvi__pattern_entries(&a->system->rows_qq);
-  double *at = x->numbers = DVI_NEW(double, nodes *(2 + 2 * s + n + entries) + 3 * rows + 2 * n +
-                                                curvature);
+  double *at = x->numbers = DVI_NEW(double, nodes *(3 + 2 * s + 2 * n + 2 * rows + 2 * entries) +
+                                                2 * rows + 2 * n + curvature);
   if (at == NULL) return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d constraints", x->rows);
   x->chi = at;
   x->beta = x->chi + nodes;
@@ -68,7 +71,10 @@ static dvi_status rows_allocate(rows_term *x)
   x->X = x->bar + nodes * s;
   x->phi_q = x->X + nodes * n;
   x->phi = x->phi_q + nodes * entries;
-  x->w = x->phi + rows;
+  x->times = x->phi + nodes * rows;
+  x->points = x->times + nodes;
+  x->results = x->points + nodes * n;
+  x->w = x->results + nodes * (rows + entries);
   x->phi_w_qq = x->w + rows;
   x->v = x->phi_w_qq + curvature;
   x->impulse = x->v + n;
@@ -161,18 +167,47 @@ static void measure_rows(rows_term *x)
   }
 }
 
+typedef dvi_status (*rows_function)(dvi__evaluator *e, int count, const double *t, const double *q,
+                                    double *result);
+
+/* Evaluate a function with so many results at some nodes at once, node after node. */
+static dvi_status ask_nodes(rows_term *x, const dvi__row_path *p, int first, int count,
+                            rows_function function, int results, double *result)
+{
+  for (int k = 0; k < count; k++) x->times[k] = node_time(x, p, first + k);
+  for (int k = 0; k < count; k++)
+    for (int i = 0; i < p->n; i++) x->points[i * count + k] = x->X[(first + k) * p->n + i];
+  DVI_TRY(function(x->action->evaluator, count, x->times, x->points, x->results));
+  for (int k = 0; k < count; k++)
+    for (int i = 0; i < results; i++) result[k * results + i] = x->results[i * count + k];
+  return DVI_OK;
+}
+
+/* Evaluate phi at all nodes but the start. */
+static dvi_status rows_values(rows_term *x, const dvi__row_path *p)
+{
+  const int rows = x->action->system->row_count;
+  if (x->in_batches) return ask_nodes(x, p, 1, p->s, dvi__rows_values, rows, x->phi);
+  for (int k = 1; k <= p->s; k++)
+    DVI_TRY(dvi__rows_value(x->action->evaluator, node_time(x, p, k), x->X + k * p->n,
+                            x->phi + (k - 1) * rows));
+  return DVI_OK;
+}
+
 /* Evaluate the gradients at all nodes that are not known. Those at the start are known from the
  * first residual of an element, and all where the Jacobian is that of the last residual's path. */
 static dvi_status rows_gradients(rows_term *x, const dvi__row_path *p)
 {
+  const int first = x->knows_start;
   if (x->knows_path) return DVI_OK;
-  for (int k = x->knows_start; k <= p->s; k++) {
+  if (x->in_batches)
+    DVI_TRY(ask_nodes(x, p, first, p->s + 1 - first, dvi__rows_all_gradients, x->entries,
+                      x->phi_q + first * x->entries));
+  for (int k = first; k <= p->s && !x->in_batches; k++)
     DVI_TRY(dvi__rows_gradients(x->action->evaluator, node_time(x, p, k), x->X + k * p->n,
                                 x->phi_q + k * x->entries));
-    if (k == 0) measure_rows(x);
-    x->knows_start = 1;
-  }
-  x->knows_path = 1;
+  if (!x->knows_start) measure_rows(x);
+  x->knows_start = x->knows_path = 1;
   return DVI_OK;
 }
 
@@ -204,10 +239,10 @@ static dvi_status rows_add(void *of, const dvi__row_path *p, const double *own, 
     }
     dvi__action_carry(x->action, x->X + k * p->n, x->impulse, R, dp);
   }
-  for (int k = 1; k <= p->s; k++) {
-    DVI_TRY(dvi__rows_value(x->action->evaluator, node_time(x, p, k), x->X + k * p->n, x->phi));
-    for (int a = 0; a < x->rows; a++) own_R[a * p->s + k - 1] = x->size[a] * x->phi[a] / p->h;
-  }
+  DVI_TRY(rows_values(x, p));
+  for (int k = 0; k < p->s; k++)
+    for (int a = 0; a < x->rows; a++)
+      own_R[a * p->s + k] = x->size[a] * x->phi[k * x->action->system->row_count + a] / p->h;
   return DVI_OK;
 }
 
@@ -335,6 +370,7 @@ dvi_status dvi__action_constrain(dvi__action *a)
   *x = (rows_term){.action = a,
                    .rows = system->place_rows,
                    .entries = dvi__pattern_entries(G),
+                   .in_batches = dvi__rows_have_batches(system) && a->s < DVI_HOLONOMIC_POINTS,
                    .acting = {system->n, system->place_rows, G->start, G->row}};
   DVI_TRY(rows_allocate(x));
   DVI_TRY(rows_fill_tables(x));

@@ -24,7 +24,10 @@ struct dvi__rattle_members {
   int has_rates;
   int width;                            /* members of the matrices that are kept */
   const dvi__holonomic_term *kept_from; /* and their constraints */
-  double *q1, *of_rows;                 /* [n], [entries of rows_q] or [rows] of one member */
+  int *member, chosen;                  /* [chosen] members whose callbacks are asked */
+  /* [POINTS], [n*POINTS], [entries of rows_q * POINTS] a batch with its results */
+  double *times, *points, *results;
+  double *q;       /* [n] a place */
   double *q_start; /* [n] of each member: where its matrix is known, at t_start */
   /* All that follows has a number of each member in each row. */
   double *t_start;                   /* [1] NaN where no matrix is known */
@@ -52,10 +55,12 @@ static dvi_status members_allocate(dvi__rattle_members *r, size_t capacity)
   const size_t n = (size_t)r->system->n, m = (size_t)r->system->row_count,
                entries = (size_t)dvi__pattern_entries(&r->system->rows_q),
                values = (size_t)dvi__pattern_entries(r->matrix.pattern);
-  double *at = r->numbers = DVI_NEW(
-      double, n + m + entries + (3 * n + 3 * m + 2 * entries + values + 7) * capacity);
+  double *at = r->numbers = DVI_NEW(double,
+                                    n + (1 + n + m + entries) * DVI_HOLONOMIC_POINTS +
+                                        (3 * n + 3 * m + 2 * entries + values + 7) * capacity);
   r->counts = DVI_NEW(long, 3 * capacity);
-  if (at == NULL || r->counts == NULL)
+  r->member = DVI_NEW(int, capacity);
+  if (at == NULL || r->counts == NULL || r->member == NULL)
     return dvi__fail(DVI_NO_MEMORY, "verlet: no memory for %zu members", capacity);
   double **const of_members[] = {&r->t_start, &r->moved, &r->last, &r->size,
                                  &r->on,      &r->least, &r->doubt};
@@ -67,8 +72,10 @@ static dvi_status members_allocate(dvi__rattle_members *r, size_t capacity)
   r->phi_q = at;
   r->moved_q = r->phi_q + entries * capacity;
   r->values = r->moved_q + entries * capacity;
-  r->q1 = r->values + values * capacity;
-  r->of_rows = r->q1 + n;
+  r->q = r->values + values * capacity;
+  r->times = r->q + n;
+  r->points = r->times + DVI_HOLONOMIC_POINTS;
+  r->results = r->points + n * DVI_HOLONOMIC_POINTS;
   r->values_taken = r->counts;
   r->solves = r->counts + capacity;
   r->new = r->counts + 2 * capacity;
@@ -115,6 +122,7 @@ void dvi__rattle_members_destroy(dvi__rattle_members **members)
   dvi__evaluator_destroy(&r->evaluator);
   dvi__release(r->numbers);
   dvi__release(r->counts);
+  dvi__release(r->member);
   dvi__release(r);
   *members = NULL;
 }
@@ -248,17 +256,28 @@ WIDE static void members_correct_end(const dvi__rattle_members *r, size_t width)
   }
 }
 
-/* ---- callbacks, one member after the other ---- */
-
-static void gather_member(size_t rows, size_t width, size_t k, const double *from, double *to)
+/* Set x to the places at the end. */
+WIDE static void members_place(const dvi__rattle_members *r, size_t numbers,
+                               const double *restrict q, const double *restrict q_compensation)
 {
-  for (size_t i = 0; i < rows; i++) to[i] = from[i * width + k];
+  const double *restrict change = r->change;
+  double *restrict x = r->x;
+  for (size_t i = 0; i < numbers; i++) x[i] = q[i] + (change[i] - q_compensation[i]);
 }
 
-static void scatter_member(size_t rows, size_t width, size_t k, const double *from, double *to)
-{
-  for (size_t i = 0; i < rows; i++) to[i * width + k] = from[i];
-}
+/* ---- callbacks ---- */
+
+/* A function of some points, with `rows` results for each, at places q [n*count] of all members and
+ * h later than their times. It takes at most so many points. */
+typedef struct request {
+  dvi_status (*function)(dvi__evaluator *e, int count, const double *t, const double *q,
+                         double *result);
+  size_t rows;
+  int most;
+  double h;
+  const double *q;
+  double *result; /* [rows*count] */
+} request;
 
 static void leave(dvi__rattle_members *r, const dvi__rattle_lanes *l, size_t k)
 {
@@ -267,29 +286,61 @@ static void leave(dvi__rattle_members *r, const dvi__rattle_lanes *l, size_t k)
   r->t_start[k] = (double)NAN;
 }
 
-/* Evaluate the gradients of the members at whose places they are not known. Returns how many there
- * are. */
-static int evaluate_gradients(dvi__rattle_members *r, const dvi__rattle_lanes *l)
+static dvi_status ask_some(const dvi__rattle_members *r, const dvi__rattle_lanes *l,
+                           const request *of, const int *member, int count)
 {
-  const size_t n = (size_t)r->system->n, width = (size_t)l->count,
-               entries = (size_t)dvi__pattern_entries(&r->system->rows_q);
-  int evaluated = 0;
-  for (size_t k = 0; k < width; k++) {
-    double *q_start = r->q_start + k * n;
-    if (l->left[k]) continue;
-    gather_member(n, width, k, l->q, r->q1);
-    if (r->t_start[k] == l->t[k] && memcmp(q_start, r->q1, n * sizeof *q_start) == 0) continue;
-    if (dvi__rows_gradients(r->evaluator, l->t[k], r->q1, r->of_rows) != DVI_OK) {
-      leave(r, l, k);
-      continue;
-    }
-    scatter_member(entries, width, k, r->of_rows, r->phi_q);
-    memcpy(q_start, r->q1, n * sizeof *q_start);
-    r->t_start[k] = l->t[k];
-    r->new[k]++;
-    evaluated++;
+  const size_t width = (size_t)l->count, n = (size_t)r->system->n;
+  double *at = r->points;
+  for (int j = 0; j < count; j++) r->times[j] = l->t[member[j]] + of->h;
+  for (size_t i = 0; i < n; i++)
+    for (int j = 0; j < count; j++) *at++ = of->q[i * width + (size_t)member[j]];
+  DVI_TRY(of->function(r->evaluator, count, r->times, r->points, r->results));
+  at = r->results;
+  for (size_t i = 0; i < of->rows; i++)
+    for (int j = 0; j < count; j++) of->result[i * width + (size_t)member[j]] = *at++;
+  return DVI_OK;
+}
+
+/* Ask for the members that are chosen. If a batch fails they are asked one by one, and those that
+ * fail are left. */
+static void ask_chosen(dvi__rattle_members *r, const dvi__rattle_lanes *l, const request *of)
+{
+  for (int first = 0, count; first < r->chosen; first += count) {
+    const int *member = r->member + first;
+    count = r->chosen - first < of->most ? r->chosen - first : of->most;
+    if (ask_some(r, l, of, member, count) == DVI_OK) continue;
+    for (int j = 0; j < count; j++)
+      if (ask_some(r, l, of, member + j, 1) != DVI_OK) leave(r, l, (size_t)member[j]);
   }
-  return evaluated;
+}
+
+/* Tell whether the gradients at a member's place are known, which they are from now on. */
+static int note_place(const dvi__rattle_members *r, const dvi__rattle_lanes *l, size_t k)
+{
+  const size_t n = (size_t)r->system->n, width = (size_t)l->count;
+  double *q_start = r->q_start + k * n;
+  int known = r->t_start[k] == l->t[k];
+  r->t_start[k] = l->t[k];
+  for (size_t i = 0; i < n; i++) r->q[i] = l->q[i * width + k];
+  known = known && memcmp(q_start, r->q, n * sizeof *q_start) == 0;
+  memcpy(q_start, r->q, n * sizeof *q_start);
+  return known;
+}
+
+static void evaluate_gradients(dvi__rattle_members *r, const dvi__rattle_lanes *l)
+{
+  r->chosen = 0;
+  for (int k = 0; k < l->count; k++) {
+    if (l->left[k] || note_place(r, l, (size_t)k)) continue;
+    r->member[r->chosen++] = k;
+    r->new[k]++;
+  }
+  ask_chosen(r, l,
+             &(request){.function = dvi__rows_all_gradients,
+                        .rows = (size_t)dvi__pattern_entries(&r->system->rows_q),
+                        .most = DVI_HOLONOMIC_POINTS,
+                        .q = l->q,
+                        .result = r->phi_q});
 }
 
 /* Factor the matrices at the members' places. */
@@ -300,7 +351,8 @@ static void factor_members(dvi__rattle_members *r, const dvi__rattle_lanes *l)
   for (size_t k = 0; k < width && !is_kept; k++) r->t_start[k] = (double)NAN;
   r->width = l->count;
   r->kept_from = r->system->holonomics;
-  if (evaluate_gradients(r, l) > 0) {
+  evaluate_gradients(r, l);
+  if (r->chosen > 0) {
     members_multiply(r, width);
     dvi__members_definite_factor(r->factor, l->count, r->values, r->least);
   }
@@ -311,38 +363,39 @@ static void factor_members(dvi__rattle_members *r, const dvi__rattle_lanes *l)
 /* Evaluate phi at the ends of the lanes that are on, into w. */
 static void evaluate_ends(dvi__rattle_members *r, const dvi__rattle_lanes *l, double h)
 {
-  const size_t n = (size_t)r->system->n, width = (size_t)l->count,
-               rows = (size_t)r->system->row_count;
-  for (size_t k = 0; k < width; k++) {
+  members_place(r, (size_t)r->system->n * (size_t)l->count, l->q, l->q_compensation);
+  r->chosen = 0;
+  for (int k = 0; k < l->count; k++) {
     if (r->on[k] == 0) continue;
+    r->member[r->chosen++] = k;
     r->values_taken[k]++;
-    for (size_t i = 0; i < n; i++) {
-      const size_t at = i * width + k;
-      r->q1[i] = l->q[at] + (r->change[at] - l->q_compensation[at]);
-    }
-    if (dvi__rows_value(r->evaluator, l->t[k] + h, r->q1, r->of_rows) != DVI_OK)
-      leave(r, l, k);
-    else
-      scatter_member(rows, width, k, r->of_rows, r->w);
   }
+  ask_chosen(r, l,
+             &(request){.function = dvi__rows_values,
+                        .rows = (size_t)r->system->row_count,
+                        .most = DVI_HOLONOMIC_POINTS,
+                        .h = h,
+                        .q = r->x,
+                        .result = r->w});
+}
+
+static dvi_status rates_of_one(dvi__evaluator *e, int count, const double *t, const double *q,
+                               double *phi_t)
+{
+  (void)count;
+  return dvi__rows_rate(e, *t, q, phi_t);
 }
 
 static void evaluate_rates(dvi__rattle_members *r, const dvi__rattle_lanes *l)
 {
-  const size_t n = (size_t)r->system->n, width = (size_t)l->count,
-               rows = (size_t)r->system->row_count;
-  if (!r->has_rates) {
-    memset(r->phi_t, 0, rows * width * sizeof(double));
-    return;
-  }
-  for (size_t k = 0; k < width; k++) {
-    if (l->left[k]) continue;
-    gather_member(n, width, k, l->q, r->q1);
-    if (dvi__rows_rate(r->evaluator, l->t[k], r->q1, r->of_rows) != DVI_OK)
-      leave(r, l, k);
-    else
-      scatter_member(rows, width, k, r->of_rows, r->phi_t);
-  }
+  const size_t rows = (size_t)r->system->row_count;
+  memset(r->phi_t, 0, rows * (size_t)l->count * sizeof(double));
+  r->chosen = 0;
+  for (int k = 0; k < l->count && r->has_rates; k++)
+    if (!l->left[k]) r->member[r->chosen++] = k;
+  ask_chosen(
+      r, l,
+      &(request){.function = rates_of_one, .rows = rows, .most = 1, .q = l->q, .result = r->phi_t});
 }
 
 /* ---- the start of a step ---- */

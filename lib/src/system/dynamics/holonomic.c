@@ -99,7 +99,8 @@ dvi_status dvi__rows_prepare(dvi__evaluator *e)
   r->row_count = s->row_count;
   r->hessian = DVI_NEW(double, dvi__pattern_entries(&s->rows_qq));
   r->dependent = DVI_NEW(char, m);
-  double *at = r->numbers = DVI_NEW(double, 9 * n + (9 + DVI__NOISE_SAMPLES) * m + 2 * rows);
+  double *at = r->numbers = DVI_NEW(double, (10 + DVI__NOISE_SAMPLES) * n +
+                                                (10 + DVI__NOISE_SAMPLES) * m + 3 * rows);
   if (r->hessian == NULL || r->dependent == NULL || at == NULL)
     return dvi__fail(DVI_NO_MEMORY, "constraints: no memory for %zu rows", m);
   r->x = at;
@@ -117,6 +118,8 @@ dvi_status dvi__rows_prepare(dvi__evaluator *e)
   r->unit = r->phi_q + rows;
   r->moved_A = r->unit + n;
   r->scale = r->moved_A + rows;
+  r->work = r->scale + m;
+  r->line = r->work + n + m + rows;
   for (int c = 0; c < s->slot_count; c++)
     for (int i = 0; s->slots[c].kind != DVI__LINE && i < dvi__chart_stored(s->slots[c].kind); i++)
       r->unit[s->slots[c].q + i] = 1;
@@ -163,6 +166,41 @@ dvi_status dvi__rows_gradients(dvi__evaluator *e, double t, const double *q, dou
   for (int k = 0; k < s->nonholonomic_count; k++)
     DVI_TRY(dvi__nonholonomic_value(&s->nonholonomics[k], t, q,
                                     phi_q + s->rows_q.start[s->nonholonomics[k].first]));
+  return DVI_OK;
+}
+
+int dvi__rows_have_batches(const dvi_system *s)
+{
+  for (int k = 0; k < s->holonomic_count; k++)
+    if (s->holonomics[k].callbacks.value_batch == NULL ||
+        s->holonomics[k].callbacks.gradient_batch == NULL)
+      return 0;
+  return s->holonomic_count > 0 && s->nonholonomic_count == 0;
+}
+
+dvi_status dvi__rows_values(dvi__evaluator *e, int count, const double *t, const double *q,
+                            double *phi)
+{
+  const dvi_system *s = e->system;
+  const dvi__rows_memory *r = dvi__rows_memory_of(e);
+  e->counters->values += count;
+  for (int k = 0; k < s->holonomic_count; k++)
+    DVI_TRY(dvi__holonomic_values(&s->holonomics[k], count, t, q, r->work,
+                                  phi + (ptrdiff_t)s->holonomics[k].first * count));
+  return DVI_OK;
+}
+
+dvi_status dvi__rows_all_gradients(dvi__evaluator *e, int count, const double *t, const double *q,
+                                   double *phi_q)
+{
+  const dvi_system *s = e->system;
+  const dvi__rows_memory *r = dvi__rows_memory_of(e);
+  e->counters->gradients += count;
+  for (int k = 0; k < s->holonomic_count; k++) {
+    const ptrdiff_t first = s->rows_q.start[s->holonomics[k].first];
+    DVI_TRY(
+        dvi__holonomic_gradients(&s->holonomics[k], count, t, q, r->work, phi_q + first * count));
+  }
   return DVI_OK;
 }
 

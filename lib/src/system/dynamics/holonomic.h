@@ -17,6 +17,16 @@ dvi_status dvi__rows_rate(dvi__evaluator *e, double t, const double *q, double *
 dvi_status dvi__rows_hessian(dvi__evaluator *e, double t, const double *q, const double *w,
                              double *phi_w_qq);
 
+/* Tell whether all rows are holonomic, and their callbacks take batches. */
+int dvi__rows_have_batches(const dvi_system *system);
+
+/* Compute phi [m*count] and the gradients [entries*count] of holonomic constraints alone, at up to
+ * DVI_HOLONOMIC_POINTS points. */
+dvi_status dvi__rows_values(dvi__evaluator *e, int count, const double *t, const double *q,
+                            double *phi);
+dvi_status dvi__rows_all_gradients(dvi__evaluator *e, int count, const double *t, const double *q,
+                                   double *phi_q);
+
 /* Compute d(A v + a)/dq of the nonholonomic constraints, one after the other, in the order of their
  * by_q. */
 dvi_status dvi__rows_derivatives(dvi__evaluator *e, double t, const double *q, const double *v,

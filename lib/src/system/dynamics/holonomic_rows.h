@@ -19,9 +19,10 @@ typedef struct dvi__rows_memory {
   double *moved_A;             /* [entries of rows_q] A at another point */
   double *derivative, *before; /* [n + m] differences along the motion of two lengths */
   double *defect;              /* [n + m] by which they differ */
-  double *samples;             /* [DVI__NOISE_SAMPLES*m] of phi near a point */
+  double *line, *samples; /* [n*DVI__NOISE_SAMPLES] near a point, and [m*DVI__NOISE_SAMPLES] phi */
   /* [n] 1 for numbers of rotations, directions and angles, which are rounded as 1 is, else 0 */
   double *unit;
+  double *work;  /* [n + m + entries of rows_q] a point of a batch and its results */
   double *scale; /* [m] powers of two near the sizes of the rows of M^-1/2 G^T, inverted */
   /* With dependent rows the matrix is [L_vv G^T; G -softness D], D the diagonal of G M^-1 G^T. */
   double softness;

@@ -24,27 +24,27 @@ static const double on_constraint = 1e-11;
 static const double of_velocity = 0x1p-48;
 
 /* Return the largest fourth difference among samples of one row. */
-static double largest_fourth_difference(const double *f, int stride)
+static double largest_fourth_difference(const double *f)
 {
   double largest = 0;
-  for (int k = 0; k + 4 < DVI__NOISE_SAMPLES; k++, f += stride)
-    largest = fmax(largest, fabs(f[0] - 4 * f[stride] + 6 * f[2 * stride] - 4 * f[3 * stride] +
-                                 f[4 * stride]));
+  for (int k = 0; k + 4 < DVI__NOISE_SAMPLES; k++, f++)
+    largest = fmax(largest, fabs(f[0] - 4 * f[1] + 6 * f[2] - 4 * f[3] + f[4]));
   return largest;
 }
 
 /* Sample phi along a line through q. */
 static dvi_status sample_rows(dvi__evaluator *e, double t, const double *q, double distance)
 {
-  const dvi_system *s = e->system;
   const dvi__rows_memory *r = dvi__rows_memory_of(e);
+  double times[DVI__NOISE_SAMPLES];
   for (int k = 0; k < DVI__NOISE_SAMPLES; k++) {
     const int from_middle = k - DVI__NOISE_SAMPLES / 2;
     const double along = from_middle * distance;
-    for (int i = 0; i < s->n; i++) r->point[i] = q[i] + (i % 2 ? -0.75 : 1) * along;
-    DVI_TRY(dvi__rows_value(e, t, r->point, r->samples + k * s->row_count));
+    times[k] = t;
+    for (int i = 0; i < e->system->n; i++)
+      r->line[i * DVI__NOISE_SAMPLES + k] = q[i] + (i % 2 ? -0.75 : 1) * along;
   }
-  return DVI_OK;
+  return dvi__rows_values(e, DVI__NOISE_SAMPLES, times, r->line, r->samples);
 }
 
 /* The summands of phi are not known, and may be larger than its gradient and q tell. Fourth
@@ -64,7 +64,7 @@ void dvi__rows_noise(dvi__evaluator *e, double t, const double *q, double *noise
     for (int a = 0; a < e->system->place_rows; a++) {
       if (noise[a] > 0 && d > near) continue;
       missing -= noise[a] == 0;
-      noise[a] = fmax(noise[a], largest_fourth_difference(r->samples + a, m));
+      noise[a] = fmax(noise[a], largest_fourth_difference(r->samples + a * DVI__NOISE_SAMPLES));
       missing += noise[a] == 0;
     }
   }

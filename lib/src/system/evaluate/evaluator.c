@@ -536,7 +536,7 @@ dvi_status dvi__velocity_hessian(dvi__evaluator *e, double t, const double *q, c
                                  const double **L_vv)
 {
   const dvi__lagrangian_term *l = e->system->lagrangian;
-  const int alone = l->computed != NULL;
+  const int alone = l->computed != NULL; /* these give L_vv alone, which costs less */
   e->counters->hessians++;
   *L_vv = e->hessian[2];
   const dvi_status status = dvi__general_hessian(l, &e->scratch, 1, &t, q, v,

@@ -1,14 +1,18 @@
 /* One-forms at the points of several members of an ensemble, which are lanes abreast
- * (num/simd/abreast.h): point k is one of lane k % DVI__ABREAST. Nothing is counted. A failure does
- * not tell at which points, and may have no sentence. */
+ * (num/simd/abreast.h): point k is one of lane k % DVI__ABREAST. Batches are not counted. A failure
+ * does not tell at which points, and may have no sentence. */
 #ifndef DVI_SYSTEM_EVALUATE_FORM_BATCHES_H
 #define DVI_SYSTEM_EVALUATE_FORM_BATCHES_H
 #include "system/evaluate/evaluator.h"
 
 /* Compute alpha [n*count] and its gradients [entries*count], in the order of the system's qv, at
- * the points of lanes that go on. Others keep their numbers. alpha_q may be NULL. */
+ * the points of lanes that go on. Others keep their numbers. Either may be NULL. */
 dvi_status dvi__form_batch(dvi__evaluator *e, int count, const int *going, const double *q,
                            double *alpha, double *alpha_q);
+
+/* Compute the gradients of alpha at one point, the mixed part of dvi__form_hessian, and count them
+ * as a Hessian. */
+dvi_status dvi__form_mixed_hessian(dvi__evaluator *e, const double *q, double *alpha_q);
 
 /* Compute the Hessians of alpha(q).w [entries*count], in the order of the system's qq, and the
  * gradients of alpha, at all points. */

@@ -34,9 +34,12 @@ static dvi_status copy_holonomic(dvi_system *s, const dvi_holonomic *given,
                                  dvi__holonomic_term *term)
 {
   const char *name = given->name != NULL ? given->name : "constraint";
-  if (given->value == NULL || given->gradient == NULL)
+  const int has_value = given->value != NULL || given->value_batch != NULL;
+  if (!has_value || (given->gradient == NULL && given->gradient_batch == NULL))
     return dvi__fail(DVI_BAD_ARGUMENT, "system: constraint '%s' has no %s callback", name,
-                     given->value == NULL ? "value" : "gradient");
+                     has_value ? "gradient" : "value");
+  DVI_TRY(dvi__check_shapes(name, given->value && given->value_batch,
+                            given->gradient && given->gradient_batch, 0, 0));
   const int most = 4 * s->nx - s->row_count;
   if (given->count < 1 || given->count > most)
     return dvi__fail(DVI_BAD_SIZE,
@@ -144,15 +147,51 @@ dvi_status dvi__holonomic_value(const dvi__holonomic_term *term, double t, const
                                 double *phi)
 {
   const dvi_holonomic *c = &term->callbacks;
-  return dvi__verdict(c->value(t, q, phi, c->user), c->count, 1, phi, term->name, "value", "");
+  const int returned = c->value_batch != NULL ? c->value_batch(1, &t, q, phi, c->user)
+                                              : c->value(t, q, phi, c->user);
+  return dvi__verdict(returned, c->count, 1, phi, term->name, "value", "");
 }
 
 dvi_status dvi__holonomic_gradient(const dvi__holonomic_term *term, double t, const double *q,
                                    double *phi_q)
 {
   const dvi_holonomic *c = &term->callbacks;
-  return dvi__verdict(c->gradient(t, q, phi_q, c->user), dvi__pattern_entries(&term->gradients), 1,
-                      phi_q, term->name, "gradient", "");
+  const int returned = c->gradient_batch != NULL ? c->gradient_batch(1, &t, q, phi_q, c->user)
+                                                 : c->gradient(t, q, phi_q, c->user);
+  return dvi__verdict(returned, dvi__pattern_entries(&term->gradients), 1, phi_q, term->name,
+                      "gradient", "");
+}
+
+dvi_status dvi__holonomic_values(const dvi__holonomic_term *term, int points, const double *t,
+                                 const double *q, double *work, double *phi)
+{
+  const dvi_holonomic *c = &term->callbacks;
+  const int n = term->gradients.rows;
+  if (c->value_batch != NULL)
+    return dvi__verdict(c->value_batch(points, t, q, phi, c->user), c->count, points, phi,
+                        term->name, "value", "");
+  for (int k = 0; k < points; k++) {
+    dvi__gather_point(n, points, k, q, work);
+    DVI_TRY(dvi__holonomic_value(term, t[k], work, work + n));
+    dvi__scatter_result(c->count, points, k, work + n, phi);
+  }
+  return DVI_OK;
+}
+
+dvi_status dvi__holonomic_gradients(const dvi__holonomic_term *term, int points, const double *t,
+                                    const double *q, double *work, double *phi_q)
+{
+  const dvi_holonomic *c = &term->callbacks;
+  const int n = term->gradients.rows, entries = dvi__pattern_entries(&term->gradients);
+  if (c->gradient_batch != NULL)
+    return dvi__verdict(c->gradient_batch(points, t, q, phi_q, c->user), entries, points, phi_q,
+                        term->name, "gradient", "");
+  for (int k = 0; k < points; k++) {
+    dvi__gather_point(n, points, k, q, work);
+    DVI_TRY(dvi__holonomic_gradient(term, t[k], work, work + n));
+    dvi__scatter_result(entries, points, k, work + n, phi_q);
+  }
+  return DVI_OK;
 }
 
 dvi_status dvi__holonomic_rate(const dvi__holonomic_term *term, double t, const double *q,

@@ -10,8 +10,14 @@ dvi_status dvi__holonomics_copy(dvi_system *system, const dvi_system_terms *term
 dvi_status dvi__rows_join(dvi_system *system);
 void dvi__holonomic_clear(dvi__holonomic_term *term);
 
-/* Compute phi [count], its gradients in the order of the term's pattern, and its rates [count], of
- * one term at one point. */
+/* Compute phi [count*points] and its gradients [entries*points] in the order of the term's pattern,
+ * of one term at up to DVI_HOLONOMIC_POINTS points. work [n + the longer result] has one point. */
+dvi_status dvi__holonomic_values(const dvi__holonomic_term *term, int points, const double *t,
+                                 const double *q, double *work, double *phi);
+dvi_status dvi__holonomic_gradients(const dvi__holonomic_term *term, int points, const double *t,
+                                    const double *q, double *work, double *phi_q);
+
+/* Compute phi [count], its gradients, and its rates [count] at one point. */
 dvi_status dvi__holonomic_value(const dvi__holonomic_term *term, double t, const double *q,
                                 double *phi);
 dvi_status dvi__holonomic_gradient(const dvi__holonomic_term *term, double t, const double *q,
