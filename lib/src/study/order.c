@@ -112,7 +112,8 @@ static void fit_levels(order_study *s)
     h[k] = s->level[k].h;
     error[k] = s->level[k].error;
   }
-  const double *end = dvi__has_judge(s->runs) ? s->solution : s->ends + s->levels * s->nq;
+  const double *end = dvi__has_judge(s->runs) ? s->solution
+                                              : s->ends + (size_t)s->levels * (size_t)s->nq;
   const double size = fmax(dvi__distance(s->nq, end, NULL), dvi__distance(s->nq, s->runs->q, NULL));
   r->floor = floor_margin * fmax(r->judge_error, DBL_EPSILON * size);
   r->ceiling = ceiling_digits * size;
@@ -155,7 +156,7 @@ dvi_status dvi_study_order(const dvi_system *system, const char *method, const d
     return dvi__fail(DVI_BAD_ARGUMENT, "order study: %g steps of the last level are too many",
                      level_steps(&s, s.levels));
   s.solution = DVI_NEW(double, s.nq);
-  s.ends = DVI_NEW(double, (s.levels + 1) * s.nq);
+  s.ends = (double *)dvi__allocate((size_t)s.nq, ((size_t)s.levels + 1) * sizeof *s.ends);
   const dvi_status status = s.solution != NULL && s.ends != NULL
                                 ? order_run(&s)
                                 : dvi__fail(DVI_NO_MEMORY, "order study: no memory for %d levels",

@@ -59,9 +59,9 @@ static dvi_status measure(work_study *s)
     for (int i = 0; i < s->count; i++)
       if (s->job[i].status == DVI_OK)
         DVI_TRY(dvi__trial_time(&s->trial[i], dvi_study_repeats(s->trial[i].seconds),
-                                &s->sample[i * s->rounds + round]));
+                                &s->sample[(size_t)i * (size_t)s->rounds + (size_t)round]));
   for (int i = 0; i < s->count; i++)
-    s->job[i].seconds = dvi_study_spread_of(s->rounds, s->sample + i * s->rounds);
+    s->job[i].seconds = dvi_study_spread_of(s->rounds, s->sample + (size_t)i * (size_t)s->rounds);
   return DVI_OK;
 }
 
