@@ -5,11 +5,11 @@ include(CMakePackageConfigHelpers)
 set(package_directory "${CMAKE_INSTALL_LIBDIR}/cmake/dvi")
 
 install(DIRECTORY lib/include/dvi DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
-install(TARGETS dvi dvi_scene EXPORT dviTargets)
+install(TARGETS dvi dvi_scene dvi_study EXPORT dviTargets)
 # Programs do not link this one, libdvi loads it.
 install(TARGETS dvi_sundials LIBRARY NAMELINK_SKIP)
 install(TARGETS dvi_static EXPORT dviStaticTargets)
-set_target_properties(dvi dvi_scene PROPERTIES INSTALL_RPATH "$ORIGIN")
+set_target_properties(dvi dvi_scene dvi_study PROPERTIES INSTALL_RPATH "$ORIGIN")
 # Libraries from a prefix are found after the installation, too.
 set_target_properties(dvi dvi_sundials PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)
 if(TARGET dvi_command)
@@ -78,5 +78,7 @@ file(RELATIVE_PATH pc_prefix "${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig" "${CMAKE_I
 string(REGEX REPLACE "/$" "" pc_prefix "${pc_prefix}")
 configure_file(cmake/dvi.pc.in dvi.pc @ONLY)
 configure_file(cmake/dvi-scene.pc.in dvi-scene.pc @ONLY)
+configure_file(cmake/dvi-study.pc.in dvi-study.pc @ONLY)
 install(FILES "${PROJECT_BINARY_DIR}/dvi.pc" "${PROJECT_BINARY_DIR}/dvi-scene.pc"
+              "${PROJECT_BINARY_DIR}/dvi-study.pc"
         DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")

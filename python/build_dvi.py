@@ -1,7 +1,7 @@
 """Build dvi._dvi, the C part of the package, by cffi in API mode.
 
 The public headers are the declarations: the C preprocessor leaves of them what cffi reads. The
-library is found by pkg-config (dvi-scene). DVI_INCLUDE and DVI_LIBRARY name the folders of a build
+library is found by pkg-config (dvi-scene, dvi-study). DVI_INCLUDE and DVI_LIBRARY name the folders of a build
 that is not installed.
 """
 import os
@@ -24,6 +24,7 @@ dvi_status interruptible_record(dvi_integrator *, const dvi_run_options *,
 SOURCE = r"""
 #include <dvi/dvi.h>
 #include <dvi/scene.h>
+#include <dvi/study/study.h>
 #include <signal.h>
 
 static volatile int cancelled;
@@ -49,7 +50,7 @@ static dvi_status interruptible_record(dvi_integrator *integrator, const dvi_run
 
 def flags(option):
     """Return what pkg-config says, without the option's two letters."""
-    said = subprocess.run(["pkg-config", option, "dvi-scene"], capture_output=True, text=True)
+    said = subprocess.run(["pkg-config", option, "dvi-scene", "dvi-study"], capture_output=True, text=True)
     return [word[2:] for word in said.stdout.split()]
 
 
@@ -67,7 +68,7 @@ def declarations(include):
         command = [os.environ.get("CC", "cc"), "-E", "-P", "-nostdinc", "-I" + folder]
         command += ["-I" + path for path in include]
         command += [f"-DDVI_{name}_H" for name in INLINE] + ["-"]
-        text = "#include <dvi/dvi.h>\n#include <dvi/scene.h>\n"
+        text = "#include <dvi/dvi.h>\n#include <dvi/scene.h>\n#include <dvi/study/study.h>\n"
         said = subprocess.run(command, input=text, capture_output=True, text=True, check=True)
     # cffi cannot compile pointers to constant arrays, and leaves such members out.
     return re.sub(r"const \w+ \(\*\w+\)\[\d\];", "...;", said.stdout)
@@ -79,7 +80,7 @@ ffibuilder = cffi.FFI()
 ffibuilder.cdef(declarations(include))
 ffibuilder.cdef(CDEF)
 ffibuilder.set_source("dvi._dvi", SOURCE, include_dirs=include, library_dirs=library,
-                      runtime_library_dirs=library, libraries=["dvi-scene", "dvi"])
+                      runtime_library_dirs=library, libraries=["dvi-study", "dvi-scene", "dvi"])
 
 if __name__ == "__main__":
     ffibuilder.compile(verbose=False)

@@ -1,5 +1,6 @@
 #include "bench/bench_report.h"
 
+#include <dvi/study/study.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -40,7 +41,7 @@ static void print_bare(FILE *stream, const work *w)
           ratio[count++] = (w->job[k].seconds.median - w->job[k].preparation_seconds) /
                            (w->job[i].seconds.median - w->job[i].preparation_seconds);
     if (count == 0) continue;
-    const spread of = samples_spread(count, ratio);
+    const dvi_study_spread of = dvi_study_spread_of(count, ratio);
     (void)fprintf(stream,
                   "%s over %s at equal steps, without creation: %.2f (least %.2f, quartiles %.2f, "
                   "%.2f)\n",

@@ -1,6 +1,7 @@
 /* The options of dvi bench, their help, and the checks before anything runs. */
 #include "bench/bench_request.h"
 
+#include <dvi/study/study.h>
 #include <math.h>
 #include <string.h>
 
@@ -60,9 +61,9 @@ static int bench_check_request(bench_request *request)
   if (request->levels > WORK_LEVELS_MAX)
     return usage_error("bench: --levels %ld is too many, %d are possible", request->levels,
                        (int)WORK_LEVELS_MAX);
-  if (request->rounds > ROUNDS_MAX)
+  if (request->rounds > DVI_STUDY_ROUNDS_MAX)
     return usage_error("bench: --rounds %ld is too many, %d are possible", request->rounds,
-                       (int)ROUNDS_MAX);
+                       (int)DVI_STUDY_ROUNDS_MAX);
   if (request->steps > STEPS_MAX)
     return usage_error("bench: --steps %ld is too many, %d are possible", request->steps,
                        (int)STEPS_MAX);

@@ -1,11 +1,10 @@
 #include "bench/machine.h"
 
 #include <dvi/dvi.h>
+#include <dvi/study/study.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include "study/clock.h"
 
 /* A sanitizer has a malloc of its own, which the C library does not know. */
 #if defined(__SANITIZE_ADDRESS__)
@@ -70,14 +69,14 @@ double machine_multiplications(void)
   volatile double start = 1.0;
   const double factor = start + 1e-10;
   double product = start;
-  const double began = cpu_now();
+  const double began = dvi_study_clock();
   for (int i = 0; i < RUN; i++) product *= factor;
-  const double spent = cpu_now() - began;
+  const double spent = dvi_study_clock() - began;
   start = product;
   return SCALE * spent;
 }
 
-void machine_print_calibration(FILE *stream, const spread *seconds)
+void machine_print_calibration(FILE *stream, const dvi_study_spread *seconds)
 {
   (void)fprintf(
       stream,
@@ -103,10 +102,10 @@ double machine_axpy(int n)
   double *x = aligned_alloc(LINE, size), *y = aligned_alloc(LINE, size), spent = 0.0;
   long passes = 0;
   for (size_t i = 0; x != NULL && y != NULL && i < count; i++) x[i] = y[i] = 1.0;
-  for (const double began = cpu_now();
+  for (const double began = dvi_study_clock();
        x != NULL && y != NULL && (passes < LEAST || spent < seconds); passes++) {
     add_multiple(count, 1e-9, x, y);
-    spent = cpu_now() - began;
+    spent = dvi_study_clock() - began;
   }
   free(x);
   free(y);

@@ -1,9 +1,8 @@
 /** The machine of a measurement. Times mean nothing without it. */
 #ifndef MACHINE_H
 #define MACHINE_H
+#include <dvi/study/study.h>
 #include <stdio.h>
-
-#include "study/samples.h"
 
 /** Print processor, compiler with its flags, and the versions of dvi and SUNDIALS, in a line
  * each. */
@@ -14,7 +13,7 @@ void machine_print(FILE *stream);
 double machine_multiplications(void);
 
 /** Print a line about repeated calls of machine_multiplications. */
-void machine_print_calibration(FILE *stream, const spread *seconds);
+void machine_print_calibration(FILE *stream, const dvi_study_spread *seconds);
 
 /** Measure the bytes a second that y <- y + a x moves in process time, in place, for n numbers in x
  * and in y. Each element takes 24 bytes, for two numbers read and one written. This is the share of

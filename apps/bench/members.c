@@ -1,5 +1,6 @@
 #include "bench/members.h"
 
+#include <dvi/study/study.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,8 +13,6 @@
 #include "load/open.h"
 #include "plot/plot.h"
 #include "cli/progress.h"
-#include "study/samples.h"
-#include "study/clock.h"
 #include "csv/table.h"
 
 enum { STEPS_DEFAULT = 64, MEMBERS_MOST = 1000000, LABEL_SIZE = 300 };
@@ -25,9 +24,9 @@ static const char axis_word[] = "members=";
 
 /* One method with one number of members. */
 typedef struct members_result {
-  double together[ROUNDS_MAX]; /* seconds of a member's step, in each round */
-  double alone[ROUNDS_MAX];
-  spread of_together, of_alone;
+  double together[DVI_STUDY_ROUNDS_MAX]; /* seconds of a member's step, in each round */
+  double alone[DVI_STUDY_ROUNDS_MAX];
+  dvi_study_spread of_together, of_alone;
   double evaluations; /* evaluations of a step */
 } members_result;
 
@@ -40,7 +39,7 @@ typedef struct comparison {
   double *q, *p;        /* [n*members] starts of the members */
   double *point;        /* [2 n] state of one member */
   members_result *cell; /* [methods][counts] */
-  spread calibration;
+  dvi_study_spread calibration;
   progress_line progress;
 } comparison;
 
@@ -119,10 +118,10 @@ static dvi_status place_members(comparison *c, int members)
 
 static dvi_status run_together(const comparison *c, dvi_ensemble *ensemble, double *spent)
 {
-  const double began = cpu_now();
+  const double began = dvi_study_clock();
   dvi_status status = dvi_ensemble_start(ensemble, 0.0, c->q, c->p);
   if (status == DVI_OK) status = dvi_ensemble_advance(ensemble, c->h, c->steps);
-  *spent = cpu_now() - began;
+  *spent = dvi_study_clock() - began;
   return status;
 }
 
@@ -144,10 +143,10 @@ static dvi_status run_alone(const comparison *c, dvi_integrator *integrator, int
                             double *spent)
 {
   dvi_status status = DVI_OK;
-  const double began = cpu_now();
+  const double began = dvi_study_clock();
   for (int k = 0; k < members && status == DVI_OK; k++)
     status = run_one_alone(c, integrator, (size_t)members, (size_t)k);
-  *spent = cpu_now() - began;
+  *spent = dvi_study_clock() - began;
   return status;
 }
 
@@ -164,7 +163,7 @@ static dvi_status measure_together(const comparison *c, const char *method, int 
   /* The first run fills memory and the machine's caches, and is not timed. */
   if (status == DVI_OK) status = run_together(c, ensemble, &spent);
   dvi_ensemble_counters(ensemble, &before);
-  const long repeats = clock_repeats(spent);
+  const long repeats = dvi_study_repeats(spent);
   for (long i = 0; i < repeats && status == DVI_OK; i++) {
     status = run_together(c, ensemble, &spent);
     total += spent;
@@ -185,7 +184,7 @@ static dvi_status measure_alone(const comparison *c, const char *method, int mem
   double total = 0.0;
   dvi_status status = dvi_integrator_create(c->scene->system, method, &integrator);
   if (status == DVI_OK) status = run_alone(c, integrator, members, &spent);
-  const long repeats = clock_repeats(spent);
+  const long repeats = dvi_study_repeats(spent);
   for (long i = 0; i < repeats && status == DVI_OK; i++) {
     status = run_alone(c, integrator, members, &spent);
     total += spent;
@@ -215,7 +214,7 @@ static int measure_round(comparison *c, int round)
 
 static int members_measure(comparison *c)
 {
-  double calibration[ROUNDS_MAX];
+  double calibration[DVI_STUDY_ROUNDS_MAX];
   const int rounds = (int)c->request->rounds;
   int code = DONE;
   progress_start(&c->progress, true);
@@ -225,17 +224,17 @@ static int members_measure(comparison *c)
   }
   progress_end(&c->progress);
   if (code != DONE) return code;
-  c->calibration = samples_spread(rounds, calibration);
+  c->calibration = dvi_study_spread_of(rounds, calibration);
   for (int i = 0; i < c->request->methods->count * c->counts.count; i++) {
-    c->cell[i].of_together = samples_spread(rounds, c->cell[i].together);
-    c->cell[i].of_alone = samples_spread(rounds, c->cell[i].alone);
+    c->cell[i].of_together = dvi_study_spread_of(rounds, c->cell[i].together);
+    c->cell[i].of_alone = dvi_study_spread_of(rounds, c->cell[i].alone);
   }
   return DONE;
 }
 
 /* ---- report ---- */
 
-static void add_spread(result_table *rows, const spread *seconds)
+static void add_spread(result_table *rows, const dvi_study_spread *seconds)
 {
   table_number(rows, seconds->median);
   table_number(rows, seconds->lower);

@@ -1,5 +1,6 @@
 #include "bench/scale.h"
 
+#include <dvi/study/study.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -22,17 +23,18 @@ enum { STEPS_DEFAULT = 32, TITLE_SIZE = 160 };
 typedef struct scale_result {
   int n;
   double h;
-  double step[ROUNDS_MAX];   /* seconds of one step, in each round */
-  spread seconds;            /* seconds over all rounds, set at their end */
-  double create[ROUNDS_MAX]; /* seconds of creation and start, in each round */
-  double first[ROUNDS_MAX];  /* seconds of the first step with its preparations, in each round */
-  spread creation, first_step;
+  double step[DVI_STUDY_ROUNDS_MAX];   /* seconds of one step, in each round */
+  dvi_study_spread seconds;            /* seconds over all rounds, set at their end */
+  double create[DVI_STUDY_ROUNDS_MAX]; /* seconds of creation and start, in each round */
+  double first
+      [DVI_STUDY_ROUNDS_MAX]; /* seconds of the first step with its preparations, in each round */
+  dvi_study_spread creation, first_step;
   double bytes;         /* NaN if not known */
   dvi_counters counted; /* counters of the steps of one run */
   double traffic;       /* bytes that a step moves, 0 if not known */
   /* bytes a second of an axpy beside the steps, in each round, where the traffic is known */
-  double axpy[ROUNDS_MAX];
-  spread bandwidth; /* spread of axpy */
+  double axpy[DVI_STUDY_ROUNDS_MAX];
+  dvi_study_spread bandwidth; /* spread of axpy */
 } scale_result;
 
 typedef struct scaling {
@@ -40,7 +42,7 @@ typedef struct scaling {
   scale_axis axis;
   long steps;         /* steps of one run */
   scale_result *cell; /* [methods][values] */
-  spread calibration;
+  dvi_study_spread calibration;
   progress_line progress;
 } scaling;
 
@@ -73,7 +75,7 @@ static scale_result *scale_cell(const scaling *s, int method, int k)
 /* Read the clock. With several threads, process time would be the sum of theirs. */
 static double scale_clock(const scaling *s)
 {
-  return s->axis.parallel ? elapsed_now() : cpu_now();
+  return s->axis.parallel ? elapsed_now() : dvi_study_clock();
 }
 
 /* Time the first steps from the start, and count their work. */
@@ -123,7 +125,7 @@ static dvi_status measure_cell(const scaling *s, const char *method, const probl
   const double grown = machine_heap() - heap;
   if (round == 0)
     c->bytes = grown > 0.0 ? grown : (double)NAN; /* another malloc does not show there */
-  const long repeats = clock_repeats(spent);
+  const long repeats = dvi_study_repeats(spent);
   for (long i = 0; i < repeats && status == DVI_OK; i++) {
     status = scale_run_steps(s, integrator, scene, c, &spent);
     total += spent;
@@ -167,7 +169,7 @@ static int measure_value(scaling *s, int k, int round)
  * of it. */
 static int scale_measure(scaling *s)
 {
-  double calibration[ROUNDS_MAX];
+  double calibration[DVI_STUDY_ROUNDS_MAX];
   const int rounds = (int)s->request->rounds;
   int code = DONE;
   progress_start(&s->progress, true);
@@ -178,12 +180,12 @@ static int scale_measure(scaling *s)
   }
   progress_end(&s->progress);
   if (code != DONE) return code;
-  s->calibration = samples_spread(rounds, calibration);
+  s->calibration = dvi_study_spread_of(rounds, calibration);
   for (int i = 0; i < s->request->methods->count * s->axis.values.count; i++) {
-    s->cell[i].seconds = samples_spread(rounds, s->cell[i].step);
-    s->cell[i].creation = samples_spread(rounds, s->cell[i].create);
-    s->cell[i].first_step = samples_spread(rounds, s->cell[i].first);
-    s->cell[i].bandwidth = samples_spread(rounds, s->cell[i].axpy);
+    s->cell[i].seconds = dvi_study_spread_of(rounds, s->cell[i].step);
+    s->cell[i].creation = dvi_study_spread_of(rounds, s->cell[i].create);
+    s->cell[i].first_step = dvi_study_spread_of(rounds, s->cell[i].first);
+    s->cell[i].bandwidth = dvi_study_spread_of(rounds, s->cell[i].axpy);
   }
   return DONE;
 }

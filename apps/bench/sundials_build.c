@@ -1,9 +1,8 @@
 #include "bench/sundials_build.h"
 
 #include <dvi/dvi.h>
+#include <dvi/study/study.h>
 #include <math.h>
-
-#include "study/clock.h"
 
 /* Defined by the build, but not for a compiler that is called by hand. */
 #ifndef DVI_BUILD_SUNDIALS
@@ -44,9 +43,9 @@ static double time_own_sums(void)
 {
   static double x[COUNT], y[COUNT], z[COUNT];
   for (int i = 0; i < COUNT; i++) x[i] = y[i] = 1;
-  const double began = cpu_now();
+  const double began = dvi_study_clock();
   for (int i = 0; i < CALLS; i++) own_sum(1.5, x, 2.5, y, z);
-  return cpu_now() - began;
+  return dvi_study_clock() - began;
 }
 
 /* Measure how many times as long a sum of vectors of SUNDIALS takes as the same loop compiled with
@@ -57,7 +56,7 @@ static double sum_ratio(void)
   double own = HUGE_VAL, theirs = HUGE_VAL;
   if (!IS_YARDSTICK) return (double)NAN;
   for (int k = 0; k < TRIALS; k++) {
-    const double seconds = dvi__sundials_sum_time(COUNT, CALLS, cpu_now);
+    const double seconds = dvi__sundials_sum_time(COUNT, CALLS, dvi_study_clock);
     if (isnan(seconds)) return seconds;
     own = fmin(own, time_own_sums());
     theirs = fmin(theirs, seconds);

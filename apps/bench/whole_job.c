@@ -1,5 +1,6 @@
 #include "bench/whole_job.h"
 
+#include <dvi/study/study.h>
 #include <dvi/scene.h>
 #include <math.h>
 #include <stdio.h>
@@ -10,7 +11,6 @@
 #include "cli/command.h"
 #include "mechanics/field_motion.h"
 #include "mechanics/march.h"
-#include "study/clock.h"
 
 enum { ENERGY, EVALUATIONS = 0 };
 
@@ -27,11 +27,11 @@ static dvi_status method_job(const whole_job *job, double steps, double *prepara
 {
   const problem *scene = job->motion.scene;
   dvi_integrator *integrator = NULL;
-  const double began = cpu_now();
+  const double began = dvi_study_clock();
   dvi_status status = open_paced(scene, job->method, &job->how, &integrator) == DONE
                           ? DVI_OK
                           : DVI_BAD_OPTION;
-  *preparation += cpu_now() - began;
+  *preparation += dvi_study_clock() - began;
   if (status == DVI_OK) status = dvi_integrator_start(integrator, 0.0, scene->q, scene->p);
   if (status == DVI_OK)
     status = march(integrator, job->span / steps, lround(steps), job->motion.t_end, NULL, NULL,
@@ -79,9 +79,9 @@ static dvi_status method_run(void *user, double steps, study_level *level)
   const whole_job *job = user;
   double preparation = 0.0;
   level->length = job->span / steps;
-  const double began = cpu_now();
+  const double began = dvi_study_clock();
   const dvi_status status = job_of(job, steps, &preparation, level);
-  level->seconds = cpu_now() - began;
+  level->seconds = dvi_study_clock() - began;
   return status;
 }
 
@@ -148,9 +148,9 @@ static dvi_status peer_run(void *user, double tolerance, study_level *level)
   for (int k = 1; k <= ENERGY_TIMES && status == DVI_OK; k++) {
     const double t = k == ENERGY_TIMES ? job->motion.t_end : job->motion.t_end * k / ENERGY_TIMES;
     double change = 0.0;
-    const double began = cpu_now();
+    const double began = dvi_study_clock();
     status = peer_solve(job->peer, scene, t, tolerance, q, p, &report);
-    level->seconds = cpu_now() - began;
+    level->seconds = dvi_study_clock() - began;
     if (status == DVI_OK) status = energy_change(scene, t, q, p, &change);
     level->further[ENERGY] = fmax(level->further[ENERGY], change);
   }
@@ -174,9 +174,9 @@ static dvi_status peer_repeat(void *user, double tolerance, double *preparation)
 static dvi_status bare_solve(const whole_job *job, double h, long steps, double *preparation,
                              long *evaluations)
 {
-  const double began = cpu_now();
+  const double began = dvi_study_clock();
   bare *loop = bare_create(job->motion.scene, job->degree, h);
-  *preparation += cpu_now() - began;
+  *preparation += dvi_study_clock() - began;
   if (loop == NULL) return DVI_NO_MEMORY;
   *evaluations = bare_run(loop, steps, job->room, job->room + job->motion.scene->nq);
   bare_destroy(loop);
@@ -195,9 +195,9 @@ static dvi_status bare_level(void *user, double steps, study_level *level)
   for (int k = 1; k <= ENERGY_TIMES && status == DVI_OK; k++) {
     const long made = lround(steps * k / ENERGY_TIMES);
     double change = 0.0, preparation = 0.0;
-    const double began = cpu_now();
+    const double began = dvi_study_clock();
     status = bare_solve(job, level->length, made, &preparation, &evaluations);
-    level->seconds = cpu_now() - began;
+    level->seconds = dvi_study_clock() - began;
     if (status == DVI_OK)
       status = energy_change(scene, level->length * (double)made, job->room, job->room + scene->nq,
                              &change);

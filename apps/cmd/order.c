@@ -1,4 +1,5 @@
 /* dvi order, which measures whether a method has the order that it claims. */
+#include <dvi/study/study.h>
 #include <dvi/scene.h>
 #include <math.h>
 #include <stdio.h>
@@ -21,7 +22,6 @@
 #include "mechanics/motion_study.h"
 #include "mechanics/single_steps.h"
 #include "csv/table.h"
-#include "study/window.h"
 
 /* A high order is asymptotic only near the floor, if at all. More levels there let the window begin
  * where it is. */
@@ -117,7 +117,7 @@ static int study_until(order_study *ask, const char *method, double t_end, bool 
 static int study_single_steps(order_study *ask, const char *method, order_result *result)
 {
   const order_request *request = ask->request;
-  const bool few = request->levels > 0 && request->levels < WINDOW_LEVELS;
+  const bool few = request->levels > 0 && request->levels < DVI_STUDY_FIT_LEAST;
   if (order_holds(result) || few || dvi_scene_marches(ask->scene->scene, method) ||
       request->how.transform != NULL || request->how.control != NULL)
     return DONE;

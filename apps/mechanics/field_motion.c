@@ -1,9 +1,8 @@
 #include "mechanics/field_motion.h"
 
+#include <dvi/study/study.h>
 #include <dvi/scene.h>
 #include <math.h>
-
-#include "study/clock.h"
 
 /* Look at the energy, the first observable. */
 static dvi_status look(const dvi_march *march, double *first, double *error)
@@ -37,9 +36,9 @@ dvi_status field_motion(const problem *scene, const char *method, double steps, 
   dvi_march *march = NULL;
   if (end == NULL) end = &unasked;
   *end = (field_motion_end){.energy_error = (double)NAN};
-  const double began = cpu_now();
+  const double began = dvi_study_clock();
   dvi_status status = dvi_scene_march_create(scene->scene, &options, &march);
-  end->seconds = cpu_now() - began;
+  end->seconds = dvi_study_clock() - began;
   if (status == DVI_OK)
     status = watched ? watch(march, steps, t_end, end) : dvi_march_advance(march, t_end);
   if (status == DVI_OK && q != NULL) status = dvi_scene_march_state(scene->scene, march, q, NULL);

@@ -8,6 +8,7 @@
  * start. */
 #include "mechanics/single_steps.h"
 
+#include <dvi/study/study.h>
 #include <dvi/scene.h>
 #include <math.h>
 #include <stdlib.h>
@@ -15,7 +16,6 @@
 
 #include "load/catalogue.h"
 #include "mechanics/quad_step.h"
-#include "study/window.h"
 
 /* The errors of single steps have a slope of one more than the order. */
 static const closer_look look = {
@@ -213,7 +213,8 @@ static void fit_levels(closer_look *found, double judge_error)
   double of_unit[SINGLE_LEVELS];
   for (int k = 0; k < SINGLE_LEVELS; k++) of_unit[k] = found->error[k] / found->length[k];
   const double floor = 10.0 * judge_error / found->length[SINGLE_LEVELS - 1];
-  found->settled = window_fit(SINGLE_LEVELS, found->length, of_unit, floor, HUGE_VAL, &found->fit);
+  found->settled = dvi_study_fit(SINGLE_LEVELS, found->length, of_unit, floor, HUGE_VAL,
+                                 &found->fit);
 }
 
 static const char *measure_levels(study *s, closer_look *found, evidence *rests)

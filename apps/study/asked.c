@@ -1,5 +1,6 @@
 #include "study/asked.h"
 
+#include <dvi/study/study.h>
 #include <math.h>
 #include <string.h>
 
@@ -58,7 +59,7 @@ static price price_at(const work *w, int first, double asked)
   (void)frontier_cost(count, error, counted, asked, &found.counted);
   found.preparation = found.answer == FRONTIER_NOT_REACHED
                           ? (double)NAN
-                          : samples_spread(count, preparation).median;
+                          : dvi_study_spread_of(count, preparation).median;
   return found;
 }
 

@@ -1,10 +1,9 @@
 #include "study/order.h"
 
+#include <dvi/study/study.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-
-#include "study/window.h"
 
 static const double order_tolerance = 0.2;
 
@@ -76,8 +75,8 @@ static dvi_status add_level(const study_subject *subject, double parts, result_t
 
 static void fit_levels(order_result *result)
 {
-  result->settled = window_fit(result->levels, result->length, result->error, result->floor,
-                               result->ceiling, &result->fit);
+  result->settled = dvi_study_fit(result->levels, result->length, result->error, result->floor,
+                                  result->ceiling, &result->fit);
 }
 
 dvi_status order_measure(const study_subject *subject, const levels_choice *choice, int levels,

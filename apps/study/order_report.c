@@ -1,8 +1,7 @@
 #include "study/order_report.h"
 
+#include <dvi/study/study.h>
 #include <math.h>
-
-#include "study/window.h"
 
 enum { PHRASE_SIZE = 192 };
 
@@ -95,9 +94,9 @@ static void print_missing(FILE *stream, const order_result *result)
   const int above = count_above(result, result->ceiling),
             below = result->levels - count_above(result, result->floor);
   (void)fprintf(stream, "not decided: ");
-  if (result->levels < WINDOW_LEVELS) {
+  if (result->levels < DVI_STUDY_FIT_LEAST) {
     (void)fprintf(stream, "%d levels are too few, %d are needed", result->levels,
-                  (int)WINDOW_LEVELS);
+                  (int)DVI_STUDY_FIT_LEAST);
     print_advice(stream, result, STUDY_MORE);
   } else if (above > below) {
     (void)fprintf(stream,
@@ -160,7 +159,7 @@ static void print_unsettled(FILE *stream, const order_result *result)
 
 static void print_levels(FILE *stream, const order_result *result)
 {
-  if (order_fitted(result) < WINDOW_LEVELS) {
+  if (order_fitted(result) < DVI_STUDY_FIT_LEAST) {
     print_missing(stream, result);
   } else if (!result->settled) {
     print_unsettled(stream, result);

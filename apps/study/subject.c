@@ -1,8 +1,7 @@
 #include "study/subject.h"
 
+#include <dvi/study/study.h>
 #include <math.h>
-
-#include "study/clock.h"
 
 /* Clear a level, except for the pointer to its numbers. */
 static void level_clear(study_level *level, double refinement)
@@ -19,9 +18,9 @@ static void level_clear(study_level *level, double refinement)
 dvi_status study_run(const study_subject *subject, double refinement, study_level *level)
 {
   level_clear(level, refinement);
-  const double began = cpu_now();
+  const double began = dvi_study_clock();
   const dvi_status status = subject->run(subject->user, refinement, level);
-  if (isnan(level->seconds)) level->seconds = cpu_now() - began;
+  if (isnan(level->seconds)) level->seconds = dvi_study_clock() - began;
   return status;
 }
 
@@ -32,15 +31,15 @@ dvi_status study_watch(const study_subject *subject, double refinement, study_le
 
 dvi_status study_time(const study_subject *subject, double refinement, study_level *level)
 {
-  const double began = cpu_now();
+  const double began = dvi_study_clock();
   double spent, preparation = 0.0;
   long runs = 0;
   do {
     const dvi_status status = subject->repeat(subject->user, refinement, &preparation);
     if (status != DVI_OK) return status;
     runs++;
-    spent = cpu_now() - began;
-  } while (clock_repeats(spent) > 1);
+    spent = dvi_study_clock() - began;
+  } while (dvi_study_repeats(spent) > 1);
   level->seconds = spent / (double)runs;
   return DVI_OK;
 }

@@ -1,11 +1,11 @@
 #include "study/work.h"
 
+#include <dvi/study/study.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "cli/command.h"
-#include "study/clock.h"
 #include "study/levels.h"
 
 enum { LEVELS_DEFAULT = 6 };
@@ -36,7 +36,7 @@ static dvi_status job_try(work *w, const study_subject *subject, double refineme
   dvi_status status = study_watch(subject, refinement, &watched);
   if (status == DVI_OK) status = study_run(subject, refinement, &job->level);
   if (subject->watch != NULL) memcpy(job->level.further, watched.further, sizeof watched.further);
-  job->repeats = clock_repeats(job->level.seconds);
+  job->repeats = dvi_study_repeats(job->level.seconds);
   w->jobs += status == DVI_OK;
   return status;
 }
@@ -185,10 +185,10 @@ static dvi_status job_time(work_job *job, int round)
   const study_subject *subject = job->subject;
   dvi_status status = DVI_OK;
   double preparation = 0.0;
-  const double began = cpu_now();
+  const double began = dvi_study_clock();
   for (long i = 0; i < job->repeats && status == DVI_OK; i++)
     status = subject->repeat(subject->user, job->level.refinement, &preparation);
-  job->cpu[round] = (cpu_now() - began) / (double)job->repeats;
+  job->cpu[round] = (dvi_study_clock() - began) / (double)job->repeats;
   job->preparation[round] = preparation / (double)job->repeats;
   return status;
 }
@@ -206,10 +206,10 @@ dvi_status work_run(work *w, double (*calibrate)(void))
   }
   for (int i = 0; i < w->jobs; i++) {
     work_job *job = &w->job[i];
-    job->seconds = samples_spread((int)w->rounds, job->cpu);
-    job->preparation_seconds = samples_spread((int)w->rounds, job->preparation).median;
+    job->seconds = dvi_study_spread_of((int)w->rounds, job->cpu);
+    job->preparation_seconds = dvi_study_spread_of((int)w->rounds, job->preparation).median;
   }
-  w->calibration = samples_spread((int)w->rounds, w->sample);
+  w->calibration = dvi_study_spread_of((int)w->rounds, w->sample);
   return DVI_OK;
 }
 

@@ -2,11 +2,11 @@
  * small errors are found. */
 #ifndef WORK_H
 #define WORK_H
+#include <dvi/study/study.h>
 #include <stdbool.h>
 
 #include "cli/numbers.h"
 #include "cli/progress.h"
-#include "study/samples.h"
 #include "study/subject.h"
 
 enum { SETTING_SIZE = 32, WORK_LEVELS_MAX = 20, WORK_LONGER_MAX = 8 };
@@ -14,13 +14,13 @@ enum { SETTING_SIZE = 32, WORK_LEVELS_MAX = 20, WORK_LONGER_MAX = 8 };
 /** A subject at a level. */
 typedef struct work_job {
   const study_subject *subject;
-  char setting[SETTING_SIZE];     /**< "h=0.05" or "tol=1e-08" */
-  study_level level;              /**< result of the first run */
-  long repeats;                   /**< number of runs in one measurement */
-  double cpu[ROUNDS_MAX];         /**< seconds of one run, in each round */
-  spread seconds;                 /**< seconds over all rounds, set at their end */
-  double preparation[ROUNDS_MAX]; /**< seconds before the first part, NaN if not known */
-  double preparation_seconds;     /**< median over all rounds, set at their end */
+  char setting[SETTING_SIZE];               /**< "h=0.05" or "tol=1e-08" */
+  study_level level;                        /**< result of the first run */
+  long repeats;                             /**< number of runs in one measurement */
+  double cpu[DVI_STUDY_ROUNDS_MAX];         /**< seconds of one run, in each round */
+  dvi_study_spread seconds;                 /**< seconds over all rounds, set at their end */
+  double preparation[DVI_STUDY_ROUNDS_MAX]; /**< seconds before the first part, NaN if not known */
+  double preparation_seconds;               /**< median over all rounds, set at their end */
 } work_job;
 
 /** All jobs in the order of the table, which is all levels of one subject, then of the next. */
@@ -33,9 +33,9 @@ typedef struct work {
   progress_line *progress; /**< progress that is shown during the measurement */
   int jobs, room;
   work_job *job; /**< [room] */
-  double sample[ROUNDS_MAX];
+  double sample[DVI_STUDY_ROUNDS_MAX];
   /** seconds of the machine's calibration, one in each round, set at their end */
-  spread calibration;
+  dvi_study_spread calibration;
 } work;
 
 /** Return the smallest error that is asked for, infinite if none is. */

@@ -232,6 +232,29 @@ def test_errors_have_the_librarys_sentences(kepler):
 def test_measured_orders(kepler):
     table = dvi.order(kepler, "galerkin:degree=2", h=0.1, t_end=2, levels=4)
     assert np.allclose(table["order"][1:], 4, atol=0.1)
+    assert table.claimed == 4 and table.holds and abs(table.order - 4) < 0.1
+    assert list(table["steps"]) == [20, 40, 80, 160] and np.all(table["energy_error"] > 0)
+    assert "holds" in table._repr_html_() and "<th>energy_error</th>" in table._repr_html_()
+    by_ida = dvi.order(kepler, "galerkin:degree=2", h=0.1, t_end=2, levels=4, reference="ida")
+    assert np.allclose(by_ida["error"][:2], table["error"][:2] * 16 / 15, rtol=0.05)
+    with pytest.raises(dvi.BadArgument, match="ratio"):
+        dvi.order(kepler, "verlet", h=0.1, t_end=2, ratio=1)
+    with pytest.raises(dvi.BadArgument, match="levels"):
+        dvi.order(kepler, "verlet", h=0.1, t_end=2, levels=100)
+    with pytest.raises(ValueError, match="reference"):
+        dvi.order(kepler, "verlet", h=0.1, t_end=2, reference="exact")
+
+
+def test_measured_work(kepler):
+    tables = dvi.work(kepler, ["verlet", "galerkin:degree=2"], [0.1, 0.05], t_end=2, rounds=2)
+    verlet, galerkin = tables.values()
+    assert list(verlet["steps"]) == [20, 40] and set(verlet["status"]) == {"DVI_OK"}
+    assert verlet["error"][0] / verlet["error"][1] == pytest.approx(4, rel=0.1)
+    assert np.all(galerkin["error"] < verlet["error"]) and np.all(galerkin["evaluations"] > 0)
+    assert np.all(verlet["lower"] <= verlet["seconds"]) and np.all(verlet["lower"] > 0)
+    assert "<td>DVI_OK</td>" in verlet._repr_html_()
+    with pytest.raises(dvi.BadArgument, match="one of end"):
+        dvi.work(kepler, ["verlet"], [0.1], t_end=2, reference=None)
 
 
 def test_files_of_the_command(kepler, tmp_path):

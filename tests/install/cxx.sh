@@ -18,13 +18,13 @@ translate() {
   shift 2
   "$compiler" -std=c++20 -Wall -Wextra -Wpedantic -Werror "$@" -I "$top/lib/include" -x c++ \
     "$source" -x none -o "$program" \
-    -L "$build/lib" -ldvi -ldvi-scene -lm -Wl,-rpath,"$build/lib"
+    -L "$build/lib" -ldvi -ldvi-scene -ldvi-study -lm -Wl,-rpath,"$build/lib"
 }
 
-for header in "$top"/lib/include/dvi/*.h; do
+for header in "$top"/lib/include/dvi/*.h "$top"/lib/include/dvi/*/*.h; do
   name=$(basename "$header" .h)
   {
-    echo "#include <dvi/$name.h>"
+    echo "#include <${header#"$top/lib/include/"}>"
     echo "typedef void (*function)();"
     echo "static const function functions[] = {nullptr"
     awk -f "$top/tests/lint/declared.awk" "$header" | sed 's/.*/, reinterpret_cast<function>(\&&)/'

@@ -26,6 +26,7 @@ quietly "$cmake" --build "$work/cmake" || fail "the consumer does not build"
 for form in shared static; do
   [ "$("$work/cmake/$form")" = "$version" ] || fail "$form: the consumer does not run"
 done
+quietly "$work/cmake/study" || fail "the consumer of studies does not run"
 
 say "find_package(dvi 99) must fail"
 if configure wrong 99; then fail "version 99 was found"; fi
@@ -43,6 +44,11 @@ quietly "$compiler" -std=c11 "$source/consumer/main.c" -o "$work/plain" \
   $(pkg-config --cflags --libs dvi) -Wl,-rpath,"$(pkg-config --variable=libdir dvi)" ||
   fail "no program by pkg-config"
 quietly "$work/plain" || fail "the program that pkg-config built does not run"
+# shellcheck disable=SC2046
+quietly "$compiler" -std=c11 "$source/consumer/study.c" -o "$work/study" \
+  $(pkg-config --cflags --libs dvi-study) -Wl,-rpath,"$(pkg-config --variable=libdir dvi)" ||
+  fail "no program with studies by pkg-config"
+quietly "$work/study" || fail "the program with studies does not run"
 # shellcheck disable=SC2046
 quietly "$compiler" -std=c11 "$source/consumer/main.c" -o "$work/plain_static" \
   $(pkg-config --cflags dvi) "$(pkg-config --variable=libdir dvi)/libdvi.a" \

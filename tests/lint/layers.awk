@@ -83,6 +83,8 @@ BEGIN {
   sees["scene/density"] = sees["scene/sections"] " scene/sections"
   sees["scene"] = sees["scene/field"] " scene/field scene/elastic scene/density"
   sees["scene/emit"] = sees["scene"] " scene"
+  # So does the library of studies.
+  sees["study"] = "core"
   # The command includes public headers and those of the problems, too.
   uses["cli"] = ""
   uses["csv"] = "cli"

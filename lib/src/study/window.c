@@ -1,6 +1,7 @@
-#include "study/window.h"
-
+/* The range of step sizes that shows an order. */
+#include <dvi/study/study.h>
 #include <math.h>
+#include <stdbool.h>
 
 /* Half of the tolerance of an order, because the slope still moves beyond the window. */
 static const double half_tolerance = 0.1;
@@ -43,12 +44,12 @@ static bool is_settled(const double *h, const double *error, int first, int last
          slope_error(h, error, first, last) <= error_tolerance;
 }
 
-bool window_fit(int levels, const double *h, const double *error, double floor, double ceiling,
-                dvi_order_fit *fit)
+int dvi_study_fit(int levels, const double *h, const double *error, double floor, double ceiling,
+                  dvi_order_fit *fit)
 {
   bool found = false;
   (void)dvi_order(levels, h, error, floor, ceiling, fit);
-  for (int count = levels; count >= WINDOW_LEVELS && !found; count--)
+  for (int count = levels; count >= DVI_STUDY_FIT_LEAST && !found; count--)
     for (int first = levels - count; first >= 0 && !found; first--) {
       const int last = first + count - 1;
       bool usable = true;

@@ -1,0 +1,156 @@
+/** Studies of methods on a system: the order that their errors show, and their time against their
+ *  error. They are in a library of their own, dvi-study (dvi::study, pkg-config dvi-study).
+ *
+ *  Other studies are calls of libdvi itself: paths between two ends in dvi/path.h, modes and
+ *  resonances in dvi/spectrum.h, and many starts or parameters in dvi/ensemble.h. */
+#ifndef DVI_STUDY_H
+#define DVI_STUDY_H
+#include <dvi/diagnostics.h>
+#include <dvi/integrator.h>
+#include <stddef.h>
+
+/** Limits. */
+enum {
+  DVI_STUDY_LEVELS_MAX = 40,    /**< largest number of levels */
+  DVI_STUDY_FIT_LEAST = 4,      /**< fewer levels than this decide nothing */
+  DVI_STUDY_ROUNDS_MAX = 99,    /**< largest number of rounds */
+  DVI_STUDY_STEPS_MAX = 1 << 28 /**< largest number of steps that a run of a given step may have */
+};
+
+/** The runs of a study: their start, their end, and what q is at their end. */
+typedef struct dvi_study_runs {
+  size_t size;     /**< sizeof(dvi_study_runs) */
+  double t;        /**< time of the start */
+  double t_end;    /**< end of the runs, another time */
+  const double *q; /**< [nq] start */
+  const double *p; /**< [nv] start. Exactly one of p and v is given */
+  const double *v; /**< [nv] start. NULL with p */
+  /** [nq] q at t_end. At most one of `end`, `exact` and `reference` is given */
+  const double *end;
+  /** Write the exact q [nq] at t. Return 0, or another number on failure */
+  int (*exact)(double t, double *q, void *user);
+  void *user;
+  int reference; /**< not 0 to compare with IDA (dvi_reference_judge at its defaults) */
+} dvi_study_runs;
+
+/** Options of an order study. Zero means default. */
+typedef struct dvi_study_order_options {
+  size_t size;  /**< sizeof(dvi_study_order_options) */
+  double h;     /**< step of the first level, without sign. Required */
+  double ratio; /**< ratio of neighbouring steps, above 1 (default 2) */
+  int levels;   /**< number of levels, from 2 to DVI_STUDY_LEVELS_MAX (default 6) */
+  int once;     /**< not 0 to leave short runs as they are, without repeats for the clock */
+} dvi_study_order_options;
+
+/** The result at a level. */
+typedef struct dvi_study_level {
+  /** step without sign. It divides the span. The first one of methods that choose their steps */
+  double h;
+  long steps;   /**< steps that were taken */
+  double error; /**< largest difference of a coordinate at t_end */
+  double slope; /**< order from the level before to this one. 0 where two errors do not tell one */
+  double energy_error;   /**< largest change of the energy since the start, over all steps */
+  double seconds;        /**< process time of a run */
+  dvi_counters counters; /**< work of a run */
+} dvi_study_level;
+
+/** The order that the levels show. */
+typedef struct dvi_study_order_result {
+  int levels;  /**< levels that were measured */
+  int claimed; /**< order of the method by its theory */
+  /** order fitted to levels `first` to `last`. 0 and first = -1 if fewer than two levels count */
+  double order;
+  int first, last;
+  int settled; /**< not 0 if the order is the same all over these levels (dvi_study_fit) */
+  /** not 0 if the fit is settled, and within 0.2 of the claimed order. 0 for methods that choose
+   *  their steps, where an error is no power of the first step */
+  int holds;
+  double judge_error; /**< error of the reference. 0 where none is known */
+  /** Errors up to the floor, ten times the judge's error or a rounding of q, and from the ceiling
+   *  on, 1 % of the largest coordinate, are not fitted */
+  double floor, ceiling;
+} dvi_study_order_result;
+
+/** Repeated measurements in a few numbers. Half of them lie between the quartiles. */
+typedef struct dvi_study_spread {
+  double least;  /**< least of all */
+  double lower;  /**< lower quartile */
+  double median; /**< median */
+  double upper;  /**< upper quartile */
+} dvi_study_spread;
+
+/** A method at a step. */
+typedef struct dvi_study_job {
+  const char *method; /**< specification, given by the caller */
+  double h;           /**< step without sign, given by the caller */
+  /** DVI_OK, or the status above 0 with which the run failed. All numbers below are then 0 */
+  dvi_status status;
+  double error;             /**< largest difference of a coordinate at t_end */
+  dvi_counters counters;    /**< work of a run */
+  dvi_study_spread seconds; /**< process time of a run, over the rounds */
+} dvi_study_job;
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** Measure the order of a method. Each level is a run from t to t_end in equal steps. The error is
+ *  that of q at t_end against `end`, `exact` or the reference. Where none of them is given,
+ *  neighbouring levels are compared, for which one more level is run.
+ *
+ *  The step of each level is the nearest one that divides the span. Runs that take less than 20 ms
+ *  are repeated for the clock, unless `once` is set. One further run of each level watches
+ *  the energy.
+ *  @param[out] level   [options->levels] the levels, as far as they were measured
+ *  @param[out] result  the fitted order. Filled on failure, too, as far as it is known
+ *  @retval DVI_BAD_ARGUMENT  a pointer is NULL, a size is none of its struct, a number is out of
+ *                            range, or more than one of `end`, `exact` and `reference` is given
+ *  @retval DVI_CALLBACK_FAILED  `exact` failed
+ *  @retval DVI_NOT_FINITE    a time, `end`, or what `exact` wrote is not finite
+ *  @retval DVI_NO_MEMORY     memory could not be allocated
+ *  @retval (others)          as dvi_integrator_create, dvi_integrator_start, dvi_run,
+ *                            dvi_integrator_invariants and dvi_reference_judge */
+dvi_status dvi_study_order(const dvi_system *system, const char *method, const dvi_study_runs *runs,
+                           const dvi_study_order_options *options, dvi_study_level *level,
+                           dvi_study_order_result *result);
+
+/** Measure the process time of methods against their error. Every round runs every job once, or as
+ *  often as the clock needs, so that whatever slows the machine for a while slows all of them.
+ *
+ *  @param[in,out] job     [count] methods with their steps. A run that fails by a status above 0
+ *                         leaves it in its job, and the study goes on
+ *  @param         count   number of jobs, at least 1
+ *  @param         rounds  from 1 to DVI_STUDY_ROUNDS_MAX
+ *  @retval DVI_BAD_ARGUMENT  as dvi_study_order, or none of `end`, `exact` and `reference` is given
+ *  @retval (others)          as dvi_study_order */
+dvi_status dvi_study_work(const dvi_system *system, const dvi_study_runs *runs, int count,
+                          dvi_study_job *job, int rounds);
+
+/** Fit an order to the longest run of levels with a settled slope. The slopes of its coarser and
+ *  its finer half agree within 0.1, and the standard error of the fitted slope is at most 0.05. Of
+ *  equally long runs the finest is taken. The function does not know which order is claimed.
+ *
+ *  @param      levels    number of levels
+ *  @param      h, error  [levels] h is positive and descending
+ *  @param      floor     errors up to this one are left out
+ *  @param      ceiling   errors from this one on are left out
+ *  @param[out] fit       the fit, that of dvi_order if there is no such run
+ *  @return not 0 if there is such a run */
+int dvi_study_fit(int levels, const double *h, const double *error, double floor, double ceiling,
+                  dvi_order_fit *fit);
+
+/** Return the least value, quartiles and median of sample [count], count >= 1, interpolated
+ *  linearly between neighbours (Hyndman and Fan's type 7). Sorts the sample. */
+dvi_study_spread dvi_study_spread_of(int count, double *sample);
+
+/** Return the process time in seconds. */
+double dvi_study_clock(void);
+
+/** Return how many runs of so many seconds each make one measurement that the clock resolves, which
+ *  takes 20 ms. */
+long dvi_study_repeats(double seconds);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
