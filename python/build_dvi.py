@@ -1,8 +1,8 @@
 """Build dvi._dvi, the C part of the package, by cffi in API mode.
 
 The public headers are the declarations: the C preprocessor leaves of them what cffi reads. The
-library is found by pkg-config (dvi-scene, dvi-study). DVI_INCLUDE and DVI_LIBRARY name the folders of a build
-that is not installed.
+library is found by pkg-config (dvi-scene, dvi-study). DVI_INCLUDE and DVI_LIBRARY name the folders
+of a build that is not installed.
 """
 import os
 import pathlib
@@ -24,7 +24,7 @@ dvi_status interruptible_record(dvi_integrator *, const dvi_run_options *,
 SOURCE = r"""
 #include <dvi/dvi.h>
 #include <dvi/scene.h>
-#include <dvi/study/study.h>
+#include <dvi/study.h>
 #include <signal.h>
 
 static volatile int cancelled;
@@ -50,7 +50,8 @@ static dvi_status interruptible_record(dvi_integrator *integrator, const dvi_run
 
 def flags(option):
     """Return what pkg-config says, without the option's two letters."""
-    said = subprocess.run(["pkg-config", option, "dvi-scene", "dvi-study"], capture_output=True, text=True)
+    said = subprocess.run(["pkg-config", option, "dvi-scene", "dvi-study"], capture_output=True,
+                          text=True)
     return [word[2:] for word in said.stdout.split()]
 
 
@@ -68,7 +69,7 @@ def declarations(include):
         command = [os.environ.get("CC", "cc"), "-E", "-P", "-nostdinc", "-I" + folder]
         command += ["-I" + path for path in include]
         command += [f"-DDVI_{name}_H" for name in INLINE] + ["-"]
-        text = "#include <dvi/dvi.h>\n#include <dvi/scene.h>\n#include <dvi/study/study.h>\n"
+        text = "#include <dvi/dvi.h>\n#include <dvi/scene.h>\n#include <dvi/study.h>\n"
         said = subprocess.run(command, input=text, capture_output=True, text=True, check=True)
     # cffi cannot compile pointers to constant arrays, and leaves such members out.
     return re.sub(r"const \w+ \(\*\w+\)\[\d\];", "...;", said.stdout)

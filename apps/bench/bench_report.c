@@ -1,6 +1,6 @@
 #include "bench/bench_report.h"
 
-#include <dvi/study/study.h>
+#include <dvi/study.h>
 #include <stdio.h>
 #include <string.h>
 

@@ -1,7 +1,7 @@
 /* The options of dvi bench, their help, and the checks before anything runs. */
 #include "bench/bench_request.h"
 
-#include <dvi/study/study.h>
+#include <dvi/study.h>
 #include <math.h>
 #include <string.h>
 

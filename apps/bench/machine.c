@@ -1,7 +1,7 @@
 #include "bench/machine.h"
 
 #include <dvi/dvi.h>
-#include <dvi/study/study.h>
+#include <dvi/study.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

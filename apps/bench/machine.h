@@ -1,7 +1,7 @@
 /** The machine of a measurement. Times mean nothing without it. */
 #ifndef MACHINE_H
 #define MACHINE_H
-#include <dvi/study/study.h>
+#include <dvi/study.h>
 #include <stdio.h>
 
 /** Print processor, compiler with its flags, and the versions of dvi and SUNDIALS, in a line

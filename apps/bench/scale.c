@@ -1,6 +1,6 @@
 #include "bench/scale.h"
 
-#include <dvi/study/study.h>
+#include <dvi/study.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 #include "bench/sundials_build.h"
 
 #include <dvi/dvi.h>
-#include <dvi/study/study.h>
+#include <dvi/study.h>
 #include <math.h>
 
 /* Defined by the build, but not for a compiler that is called by hand. */

@@ -1,6 +1,6 @@
 #include "bench/whole_job.h"
 
-#include <dvi/study/study.h>
+#include <dvi/study.h>
 #include <dvi/scene.h>
 #include <math.h>
 #include <stdio.h>

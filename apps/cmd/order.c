@@ -1,5 +1,5 @@
 /* dvi order, which measures whether a method has the order that it claims. */
-#include <dvi/study/study.h>
+#include <dvi/study.h>
 #include <dvi/scene.h>
 #include <math.h>
 #include <stdio.h>

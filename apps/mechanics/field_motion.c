@@ -1,6 +1,6 @@
 #include "mechanics/field_motion.h"
 
-#include <dvi/study/study.h>
+#include <dvi/study.h>
 #include <dvi/scene.h>
 #include <math.h>
 

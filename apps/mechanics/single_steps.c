@@ -8,7 +8,7 @@
  * start. */
 #include "mechanics/single_steps.h"
 
-#include <dvi/study/study.h>
+#include <dvi/study.h>
 #include <dvi/scene.h>
 #include <math.h>
 #include <stdlib.h>

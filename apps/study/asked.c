@@ -1,6 +1,6 @@
 #include "study/asked.h"
 
-#include <dvi/study/study.h>
+#include <dvi/study.h>
 #include <math.h>
 #include <string.h>
 

@@ -1,6 +1,6 @@
 #include "study/order_report.h"
 
-#include <dvi/study/study.h>
+#include <dvi/study.h>
 #include <math.h>
 
 enum { PHRASE_SIZE = 192 };

@@ -1,6 +1,6 @@
 #include "study/subject.h"
 
-#include <dvi/study/study.h>
+#include <dvi/study.h>
 #include <math.h>
 
 /* Clear a level, except for the pointer to its numbers. */

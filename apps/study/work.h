@@ -2,7 +2,7 @@
  * small errors are found. */
 #ifndef WORK_H
 #define WORK_H
-#include <dvi/study/study.h>
+#include <dvi/study.h>
 #include <stdbool.h>
 
 #include "cli/numbers.h"

@@ -216,7 +216,7 @@ static bool take_numbers(view_layout *layout, const names *n)
   return true;
 }
 
-/* Place bodies that have no place side by side, as the sections of a rod. A single one stands at
+/* Place bodies that have no place side by side, as the sections of a rod. A single one is at
  * the origin. */
 static void spread_bodies(view_layout *layout)
 {

@@ -21,7 +21,7 @@ translate() {
     -L "$build/lib" -ldvi -ldvi-scene -ldvi-study -lm -Wl,-rpath,"$build/lib"
 }
 
-for header in "$top"/lib/include/dvi/*.h "$top"/lib/include/dvi/*/*.h; do
+for header in "$top"/lib/include/dvi/*.h; do
   name=$(basename "$header" .h)
   {
     echo "#include <${header#"$top/lib/include/"}>"

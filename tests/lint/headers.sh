@@ -5,7 +5,7 @@ set -u
 include=$1 language=$2 compiler=$3
 shift 3
 rc=0
-for header in "$include"/dvi/*.h "$include"/dvi/*/*.h; do
+for header in "$include"/dvi/*.h; do
   [ -e "$header" ] || continue
   echo "#include <${header#"$include"/}>" |
     "$compiler" "$@" -x "$language" -I "$include" -Wall -Wextra -Wpedantic -Werror \

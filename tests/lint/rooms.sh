@@ -1,7 +1,7 @@
 #!/bin/sh
 # The rooms of the library and of the command include each other in no circle, no folder has more
 # than 30 files at one level, and docs/CONTRIBUTING.md shows the rooms as they are. The public
-# headers are flat on purpose, one for each object of the library, and may be 44.
+# headers are flat on purpose, one for each object of the library, and may be 45.
 # Usage: rooms.sh [--update] [TOP]
 # With --update it draws the rooms anew in docs/CONTRIBUTING.md.
 set -u
@@ -25,7 +25,7 @@ done >"$work/drawing" || exit 1
 for folder in $(find lib apps tests cmake docs -type d ! -path docs/pictures); do
   count=$(find "$folder" -maxdepth 1 -type f | wc -l)
   most=30
-  if [ "$folder" = lib/include/dvi ]; then most=44; fi
+  if [ "$folder" = lib/include/dvi ]; then most=45; fi
   if [ "$count" -gt $most ]; then
     echo "$folder has $count files at one level, $most at most: move some into a folder below it"
     rc=1

@@ -1,6 +1,6 @@
 /* labels: order */
 /* Order studies by dvi_study_order. */
-#include <dvi/study/study.h>
+#include <dvi/study.h>
 #include <math.h>
 
 #include "core/memory.h"

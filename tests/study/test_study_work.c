@@ -1,5 +1,5 @@
 /* Work against error by dvi_study_work, and the parts that studies share. */
-#include <dvi/study/study.h>
+#include <dvi/study.h>
 #include <math.h>
 #include <string.h>
 

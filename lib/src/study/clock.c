@@ -1,6 +1,6 @@
 /* Clocks of measurements. */
 #define _POSIX_C_SOURCE 199309L /* clock_gettime */
-#include <dvi/study/study.h>
+#include <dvi/study.h>
 #include <math.h>
 #include <time.h>
 

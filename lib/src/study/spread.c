@@ -1,5 +1,5 @@
 /* Repeated measurements in a few numbers. */
-#include <dvi/study/study.h>
+#include <dvi/study.h>
 #include <stdlib.h>
 
 static int compare_size(const void *left, const void *right)

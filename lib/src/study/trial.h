@@ -1,7 +1,7 @@
 /* One method at one step: its runs from the start to the end of a study. */
 #ifndef DVI_STUDY_TRIAL_H
 #define DVI_STUDY_TRIAL_H
-#include <dvi/study/study.h>
+#include <dvi/study.h>
 
 /* A method at a step, with the result of its first run. */
 typedef struct dvi__trial {

@@ -1,5 +1,5 @@
 /* The range of step sizes that shows an order. */
-#include <dvi/study/study.h>
+#include <dvi/study.h>
 #include <math.h>
 #include <stdbool.h>
 

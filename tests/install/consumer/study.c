@@ -1,5 +1,5 @@
 /* Uses the installed library of studies: a spread and a fit, and the sentence on missing runs. */
-#include <dvi/study/study.h>
+#include <dvi/study.h>
 #include <string.h>
 
 int main(void)
