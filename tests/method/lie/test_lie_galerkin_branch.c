@@ -214,6 +214,24 @@ START_TEST(usual_steps_are_not_followed)
 }
 END_TEST
 
+/* Fixed-point iteration has no determinant whose sign could tell that a solution is another one. */
+START_TEST(iteration_backwards_follows_no_branch)
+{
+  static const double J[] = {1, 2, 2.5}, v[] = {.3, .2, -.4};
+  dvi_system *system = free_rod(J);
+  dvi_integrator *integrator = create_integrator(system, "lie-galerkin:solver=fixed-point");
+  dvi_counters counters;
+  ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, unit, v), DVI_OK);
+  for (int i = 0; i < 8; i++) ck_assert_int_eq(dvi_integrator_step(integrator, -.05), DVI_OK);
+  dvi_integrator_counters(integrator, &counters);
+  ck_assert_int_eq(counters.fixed_points, 8);
+  ck_assert_int_eq(counters.followed, 0);
+  ck_assert_int_eq(counters.jacobians, 0);
+  dvi_integrator_destroy(&integrator);
+  dvi_system_destroy(&system);
+}
+END_TEST
+
 SUITE(lie_galerkin_branch)
 {
   tcase_add_loop_test(tests, steps_of_rods_find_the_motion, 0, sizeof rods / sizeof *rods);
@@ -222,4 +240,5 @@ SUITE(lie_galerkin_branch)
   tcase_add_loop_test(tests, steps_beyond_a_fold_are_refused, 0, 2);
   tcase_add_loop_test(tests, refusals_tell_how_far_a_step_may_go, 0, 3);
   tcase_add_loop_test(tests, usual_steps_are_not_followed, 0, 3);
+  tcase_add_test(tests, iteration_backwards_follows_no_branch);
 }

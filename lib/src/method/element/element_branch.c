@@ -222,10 +222,12 @@ dvi__doubt dvi__element_doubt(const dvi__stepper *self, const dvi__element_place
 }
 
 /* Tell whether a solution in charts is not the one that continues shorter steps. It turns far away
- * from its guess, or the determinant has the other sign. */
+ * from its guess, or the determinant has the other sign. Fixed-point iteration without blocks has
+ * no determinant, and the solver's factor is that of an earlier step. */
 int dvi__element_strays(const dvi__stepper *self, const dvi__element_place *at)
 {
   const dvi__element *own = self->own;
-  if (dvi__action_signs(own->action) && element_is_folded(self, at)) return 1;
+  const int has_factor = own->rung != DVI__FIXED_POINT || own->by_blocks;
+  if (has_factor && dvi__action_signs(own->action) && element_is_folded(self, at)) return 1;
   return !(dvi__action_turn(own->action, own->guess, own->Y) <= near_in_charts);
 }
