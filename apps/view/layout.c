@@ -216,8 +216,8 @@ static bool take_numbers(view_layout *layout, const names *n)
   return true;
 }
 
-/* Place bodies that have no place side by side, as the sections of a rod. A single one stands at the
- * origin. */
+/* Place bodies that have no place side by side, as the sections of a rod. A single one stands at
+ * the origin. */
 static void spread_bodies(view_layout *layout)
 {
   const bool have_places = layout->points > 0;
