@@ -2,7 +2,9 @@
  * no part of it could serve as a scale.
  *
  * The scale is the mean change of the invariant if each number of the state is replaced at random
- * by its value at the start. A constant in the invariant plays no part. */
+ * by its value at the start. A constant in the invariant plays no part. For the energy, but that of
+ * one-forms, all coordinates go back at once: a net or a field that is mixed point by point is
+ * rough, and its energy far above that of the motion. */
 #ifndef NATURAL_SCALE_H
 #define NATURAL_SCALE_H
 #include <stdbool.h>
@@ -12,6 +14,7 @@
 typedef struct natural_scale {
   const problem *scene;
   int invariants, looks;
+  int apart, energy_looks; /**< 1 if the energy, invariant 0, is mixed otherwise, or 0 */
   unsigned chance;
   double *room;            /**< owned memory of the following arrays */
   double *start, *mixed;   /**< [nq + nv] */

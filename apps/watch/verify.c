@@ -24,6 +24,9 @@
 enum { WITNESS_STEPS = 200000 };
 static const double witness_seconds = 2.0;
 
+/* The scales of invariants are measured so often on the way. */
+enum { SCALE_LOOKS = 20 };
+
 static const char ended_again[] = "dvi: run: a second Ctrl-C ended the verification at once\n";
 
 /* The numbers of a result are t, q, p, and the columns. */
@@ -38,6 +41,7 @@ typedef struct verifier {
   trust_group group[TRUST_GROUPS]; /* coordinates and momenta */
   trust_study trust;
   natural_scale scale;      /* scales of the invariants */
+  int next_look;            /* when to look for them, in parts of the run */
   double seconds;           /* process time of the levels */
   double witness_tolerance; /* tolerance of the witness */
   double refinement;        /* refinement of the current level */
@@ -76,9 +80,12 @@ static int verify_observe(dvi_integrator *integrator, void *user)
   progress_show(&v->progress, (done - 1.0 + done * part) / (ldexp(1.0, TRUST_LEVELS) - 1.0),
                 "dvi run --verify");
   const long steps = v->steps++;
-  if (v->refinement > 1.0 || !energy_look_due(steps)) return 0;
-  if ((steps & (steps - 1)) == 0 && v->columns.shows[COLUMN_INVARIANT])
+  if (v->refinement > 1.0) return 0;
+  if (part * SCALE_LOOKS >= v->next_look && v->columns.shows[COLUMN_INVARIANT]) {
     natural_scale_look(&v->scale, integrator);
+    v->next_look = (int)(part * SCALE_LOOKS) + 1;
+  }
+  if (!energy_look_due(steps)) return 0;
   if (!read_numbers(v, v->trust.number[0])) return -1;
   for (int i = 0; i < v->trust.count; i++)
     v->trust.size[i] = fmax(v->trust.size[i], fabs(v->trust.number[0][i]));

@@ -224,4 +224,29 @@ expect 0 'a vector along an axis' run kepler --method galerkin:degree=4 --h 0.1 
   --verify --digits 6 --columns laplace_y
 expect 3 'no more than its error' run kepler --method galerkin:degree=4 --h 0.1 --t-end 10 \
   --verify --digits 8 --columns laplace_y
+
+# size COLUMN: the magnitude that the digits of a column in the table `out` are relative to.
+size() { awk -F, -v column="$1" '$1 == column { print $5 }' out; }
+
+# The scale of an invariant that is 0 is one of the motion, however many steps it has.
+for h in 0.1 0.005; do
+  expect 0 "a scale by --h $h" run kepler --method galerkin:degree=4 --h $h --t-end 10 --verify \
+    --columns laplace_y --csv -
+  size laplace_y >scale.$h
+done
+paste scale.0.1 scale.0.005 | awk '{ exit !($1 > $2/1.5 && $1 < 1.5*$2) }' ||
+  fail "the scale of laplace_y depends on the step: $(paste scale.0.1 scale.0.005)"
+
+# A membrane has no more energy than its motion, and no more digits of it than are right.
+cat >square.yaml <<'END'
+mesh: {generator: staggered, cells: [40, 40], size: [1, 1]}
+field: wave
+boundary: fixed
+initial: {u: sin(pi*x)*sin(2*pi*y)}
+method: verlet
+step: 0.0101
+until: 1
+END
+expect 0 'a membrane' run square.yaml --verify --columns energy --csv -
+size energy | awk '{ exit !($1 > 6 && $1 < 6.3) }' || fail "a membrane's energy: $(size energy)"
 finish
