@@ -47,14 +47,13 @@ class Ensemble:
 
     def record(self, h, steps, every=1):
         """Take steps, and return t [rows], q [rows, nq, members] and p [rows, nv, members]."""
-        rows = steps // every + 1
-        t = np.empty((rows, self.members))
-        q, p = (np.empty((rows, n, self.members)) for n in (self.system.nq, self.system.nv))
-        for row in range(rows):
-            if row > 0:
-                self.advance(h, every)
-            self._check(lib.dvi_ensemble_state(self.pointer, numbers(t[row]), numbers(q[row]),
-                                               numbers(p[row])))
+        count = steps // every + 1
+        t = np.empty((count, self.members))
+        q, p = (np.empty((count, n, self.members)) for n in (self.system.nq, self.system.nv))
+        rows = ffi.new("dvi_ensemble_rows *", {"size": ffi.sizeof("dvi_ensemble_rows"),
+                                               "t": numbers(t), "q": numbers(q),
+                                               "p": numbers(p)})
+        self._check(lib.dvi_ensemble_record(self.pointer, h, every, count, rows))
         return t[:, 0], q, p
 
     def _state(self, which):

@@ -2,6 +2,8 @@
 #ifndef DVI_ENSEMBLE_H
 #define DVI_ENSEMBLE_H
 #include <dvi/integrator.h>
+#include <stddef.h>
+#include <stdint.h>
 #include <dvi/shapes.h>
 
 /** Members differ in their initial states, or in the parameters of their systems. Each member has
@@ -9,12 +11,9 @@
  *  number of threads and however the members are grouped.
  *
  *  Members side by side are the lanes of vectors, and one batch callback evaluates all their
- *  points. The potentials must give their gradients for this, and a general Lagrangian its
- *  gradient and its Hessian. It serves verlet with a scalar or diagonal mass, fixed-point
- *  iteration of the implicit methods, lie-verlet for bodies, directions and angles that no mass
- *  couples, without constraints, and compositions of these. Beside uniform friction the implicit
- *  methods need solver=fixed-point for it. Everything else goes member by member, as an
- *  integrator does. An ensemble serves one caller at a time. */
+ *  points. The section "Ensembles" of docs/guide.md has the methods and systems for which this is
+ *  so. Everything else goes member by member, as an integrator does. An ensemble serves one caller
+ *  at a time. */
 typedef struct dvi_ensemble dvi_ensemble;
 
 /** Options of an ensemble. Zero means default. */
@@ -41,6 +40,13 @@ typedef struct dvi_ensemble_options {
    *  threads than one their callbacks run at the same time, too. May be NULL. */
   const dvi_shapes *shapes;
 } dvi_ensemble_options;
+
+/** Arrays of the caller for the states of an ensemble at several times. Each may be NULL. */
+typedef struct dvi_ensemble_rows {
+  size_t size;   /**< sizeof(dvi_ensemble_rows) */
+  double *t;     /**< [rows*members] */
+  double *q, *p; /**< [rows*nq*members], [rows*nv*members], each row as dvi_ensemble_state has it */
+} dvi_ensemble_rows;
 
 #ifdef __cplusplus
 extern "C" {
@@ -107,6 +113,14 @@ dvi_status dvi_ensemble_advance(dvi_ensemble *ensemble, double h, long steps);
  *
  *  @retval DVI_BAD_STATE  before dvi_ensemble_start */
 dvi_status dvi_ensemble_state(const dvi_ensemble *ensemble, double *t, double *q, double *p);
+
+/** Record states: those at present, and then `count` - 1 rows more, each after `every` steps.
+ *
+ *  @retval DVI_BAD_ARGUMENT  count or every is below 1, or as dvi_ensemble_advance
+ *  @retval (others)          as dvi_ensemble_advance. The rows before are filled, and the members
+ *                            stand where it left them */
+dvi_status dvi_ensemble_record(dvi_ensemble *ensemble, double h, long every, int64_t count,
+                               const dvi_ensemble_rows *rows);
 
 /** Return this member's status of the last dvi_ensemble_advance or dvi_ensemble_step. DVI_OK before
  *  the first one, DVI_BAD_ARGUMENT if there is no such member. */

@@ -10,6 +10,7 @@
 #include <dvi/field.h>
 #include <dvi/march.h>
 #include <dvi/moving.h>
+#include <dvi/run.h>
 #include <dvi/schroedinger.h>
 #include <dvi/sensitivity.h>
 #include <dvi/system.h>
@@ -111,6 +112,20 @@ typedef struct dvi_scene_point {
 typedef struct dvi_pair {
   double high, low;
 } dvi_pair;
+
+/** Options of a run of a scene. Zero means what the scene says. All is owned by the caller. */
+typedef struct dvi_scene_run_options {
+  size_t size;        /**< sizeof(dvi_scene_run_options) */
+  const char *method; /**< the method's specification */
+  double h, t_end;
+  long every;          /**< steps between two rows */
+  const double *q;     /**< [nq] another start, with v or p */
+  const double *v, *p; /**< [nv] its velocities, or its momenta */
+  unsigned parts;      /**< parts of a row (dvi_record_options). Default: coordinates and momenta */
+  const double *times; /**< [time_count] times of the rows, in place of `every` */
+  int64_t time_count;
+  const volatile int *cancel; /**< as in dvi_run_options */
+} dvi_scene_run_options;
 
 #ifdef __cplusplus
 extern "C" {
@@ -436,6 +451,25 @@ void dvi_scene_tell(const dvi_scene *scene, const char *section, const char *sen
  *  @retval DVI_NO_MEMORY     memory could not be allocated */
 dvi_status dvi_scene_emit_c(const dvi_scene *scene, const char *name,
                             int (*write)(const char *text, size_t size, void *user), void *user);
+
+/** Run a scene's system from its start at t = 0 to its end, with the scene's events, of which
+ *  terminal ones end the run, and record the run.
+ *
+ *  @param      options    NULL for the scene's method, step, end and start
+ *  @param[out] recording  for dvi_recording_destroy before the scene's end. As dvi_record gives it,
+ *                         on failure too
+ *  @retval DVI_BAD_ARGUMENT  there is no method, or a start with both or none of v and p
+ *  @retval DVI_UNSUPPORTED   the scene has no system (dvi_scene_system)
+ *  @retval (others)          as dvi_integrator_create, dvi_integrator_start and dvi_record */
+dvi_status dvi_scene_run(const dvi_scene *scene, const dvi_scene_run_options *options,
+                         dvi_recording **recording);
+
+/** Return a column of a recorded run of the scene: "t", or a coordinate, velocity, momentum or
+ *  invariant by its name. Row k has the number column[k * stride]. Owned by the recording.
+ *
+ *  @return NULL if the recording has no such column (dvi_recording_derive adds some) */
+const double *dvi_scene_column(const dvi_scene *scene, const dvi_recording *recording,
+                               const char *name, int *stride);
 
 #ifdef __cplusplus
 }
