@@ -1,4 +1,5 @@
 /* dvi view, which writes a page that shows a run in a browser. */
+#include <dvi/scene.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -156,6 +157,14 @@ static int take_source(const view_request *r, const char *path, view_source *sou
   return take_scene(r, path, source, ended);
 }
 
+/* Return the title of a scene or else its name, the summary of a problem, or the path of a file. */
+static const char *title_of(const problem *scene, const char *path)
+{
+  if (scene == NULL) return path;
+  const int untitled = scene->scene != NULL && dvi_scene_plan_of(scene->scene)->title == NULL;
+  return untitled ? scene->name : scene->summary;
+}
+
 static int view_file(const view_request *r, const char *path)
 {
   view_source source = {.scene = NULL};
@@ -169,9 +178,7 @@ static int view_file(const view_request *r, const char *path)
   if (code == DONE && source.run.layout != NULL && r->fields.count > 0)
     code = usage_error("view: --field is for fields, and %s has none", path);
   if (code == DONE) code = add_links(&r->links, &source.layout);
-  source.run.title = r->title != NULL       ? r->title
-                     : source.scene != NULL ? source.scene->summary
-                                            : path;
+  source.run.title = r->title != NULL ? r->title : title_of(source.scene, path);
   (void)snprintf(made, sizeof made, "dvi view %s%s%s", path, r->method != NULL ? " --method " : "",
                  r->method != NULL ? r->method : "");
   source.run.made = made;

@@ -72,6 +72,7 @@ until: 0.1
 END
 expect 0 'sections of a rod' view rod.yaml --out rod.html
 holds rod.html '"points":["R_1","R_2","R_3"]' 'sections side by side'
+holds rod.html '"title":"rod"' 'the name of a scene without a title'
 
 expect 0 'the catalogue' view double-pendulum --method galerkin:degree=2 --h 0.02 --t-end 2 \
   --set l1=1 --out double.html
