@@ -10,7 +10,7 @@ static const char orbit[] =
     "coordinates: {x: scalar, y: scalar}\n"
     "lagrangian: (x'^2 + y'^2)/2 + 1/hypot(x, y)\n"
     "initial: {x: 1 - e, y: 0, x': 0, y': sqrt((1 + e)/(1 - e))}\n"
-    "events: {crossing: {zero: y, direction: falling, terminal: true}}\n"
+    "events: {crossing: {zero: y, direction: falling, stop: yes}}\n"
     "method: galerkin:degree=3\nstep: 0.0625\nuntil: 20\nreport: {every: 4}\n";
 
 static dvi_recording *recording;
