@@ -199,9 +199,10 @@ INLINE void divide_abreast(int n, int k, dvi__abreast *column, int *regular)
   for (int i = first; i < end; i++) column[i] += by * (i == k ? 1.0 : 0.0);
 }
 
-INLINE void subtract_abreast(int n, const dvi__abreast *x, dvi__abreast factor, dvi__abreast *y)
+INLINE void subtract_abreast(int n, const dvi__abreast *x, const dvi__abreast *factor,
+                             dvi__abreast *y)
 {
-  for (int i = 0; i < n; i++) y[i] -= factor * x[i];
+  for (int i = 0; i < n; i++) y[i] -= *factor * x[i];
 }
 
 /* Eliminate two rows from two columns in one pass, which loads the divided columns once. */
@@ -219,14 +220,15 @@ INLINE void eliminate_from_pair(int n, int k, const dvi__abreast *one, const dvi
 INLINE void eliminate_two_abreast(int n, int k, dvi__abreast *A, int *regular)
 {
   dvi__abreast *one = A + k * n, *two = one + n;
+  const dvi__abreast below = two[k];
   divide_abreast(n, k, one, regular);
-  subtract_abreast(n, one, two[k], two);
+  subtract_abreast(n, one, &below, two);
   divide_abreast(n, k + 1, two, regular);
   const dvi__abreast both = one[k + 1];
   for (int j = 0; j < n; j += 2)
     if (j != k) eliminate_from_pair(n, k, one, two, A + j * n);
   one[k] -= 1;
-  subtract_abreast(n, two, both, one);
+  subtract_abreast(n, two, &both, one);
   two[k + 1] -= 1;
 }
 
