@@ -12,6 +12,8 @@ set -eu
 packages="gcc g++ libc6-dev make cmake pkg-config libsundials-dev libsuitesparse-dev liblapack-dev
   libarpack2-dev libyaml-dev libhdf5-dev check gnuplot-nox
   python3-dev python3-cffi python3-numpy python3-h5py python3-setuptools python3-pytest"
+# The pages' Python and the notebooks need these.
+test_packages="python3-matplotlib python3-scipy python3-sympy"
 site_packages="python3 mkdocs"
 lint_packages="$site_packages clang clang-tidy clang-format cppcheck doxygen valgrind libc6-dbg
   libclang-rt-dev esbuild"
@@ -60,6 +62,7 @@ KLU, SuiteSparse, LAPACK, ARPACK, libyaml, HDF5, Check, gnuplot and, for a test,
 for lint also clang, clang-tidy, clang-format, cppcheck, Doxygen and valgrind. On Debian these
 packages are called
   $packages
+  $test_packages
   $lint_packages
 Then:  cmake --preset release && cmake --build --preset release
        ctest --preset release -LE "lint|long"
@@ -204,7 +207,7 @@ cores=$(getconf _NPROCESSORS_ONLN 2>/dev/null || echo 1)
 case $1 in
   demo) demo ;;
   test)
-    install_packages
+    install_packages "$test_packages"
     build release
     run_tests release -LE "lint|long"
     ;;

@@ -4,30 +4,25 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "record/recording.h"
-#include "system/evaluate/evaluator.h"
 
-/* Evaluate the velocities of all rows. One is the guess for the next. */
-static dvi_status derive_velocities(const dvi_recording *r, dvi__evaluator *e, double *v)
+dvi_status dvi__recording_derive_row(const dvi_recording *r, int64_t row, dvi__evaluator *e,
+                                     double *v, double *invariants)
 {
-  const size_t nq = (size_t)r->nq, nv = (size_t)r->nv, rows = (size_t)r->rows;
-  const double *t = r->part[DVI__ROW_T].number, *q = r->part[DVI__ROW_Q].number,
-               *p = r->part[DVI__ROW_P].number;
-  for (size_t k = 0; k < rows; k++) {
-    if (k > 0) memcpy(v + k * nv, v + (k - 1) * nv, nv * sizeof *v);
-    DVI_TRY(dvi__legendre_inverse(e, t[k], q + k * nq, p + k * nv, v + k * nv));
-  }
-  return DVI_OK;
+  const double t = r->part[DVI__ROW_T].number[row], *q = r->part[DVI__ROW_Q].number + row * r->nq,
+               *p = r->part[DVI__ROW_P].number + row * r->nv;
+  DVI_TRY(dvi__legendre_inverse(e, t, q, p, v));
+  return invariants != NULL ? dvi__invariants(e, t, q, v, p, invariants) : DVI_OK;
 }
 
-static dvi_status derive_invariants(const dvi_recording *r, dvi__evaluator *e, const double *v,
-                                    double *value)
+/* Evaluate all rows. A velocity is the guess for the next. */
+static dvi_status derive_rows(const dvi_recording *r, dvi__evaluator *e, double *v, double *value)
 {
-  const size_t nq = (size_t)r->nq, nv = (size_t)r->nv, rows = (size_t)r->rows,
-               count = (size_t)dvi_system_invariant_count(r->system);
-  const double *t = r->part[DVI__ROW_T].number, *q = r->part[DVI__ROW_Q].number,
-               *p = r->part[DVI__ROW_P].number;
-  for (size_t k = 0; k < rows; k++)
-    DVI_TRY(dvi__invariants(e, t[k], q + k * nq, v + k * nv, p + k * nv, value + k * count));
+  const size_t nv = (size_t)r->nv, count = (size_t)dvi_system_invariant_count(r->system);
+  for (size_t k = 0; k < (size_t)r->rows; k++) {
+    if (k > 0) memcpy(v + k * nv, v + (k - 1) * nv, nv * sizeof *v);
+    DVI_TRY(dvi__recording_derive_row(r, (int64_t)k, e, v + k * nv,
+                                      value != NULL ? value + k * count : NULL));
+  }
   return DVI_OK;
 }
 
@@ -44,12 +39,11 @@ static dvi_status derive_parts(dvi_recording *r, unsigned parts, dvi__evaluator 
 {
   const size_t count = (size_t)dvi_system_invariant_count(r->system);
   double *v = DVI_NEW(double, r->rows * r->nv), *value = DVI_NEW(double, (size_t)r->rows *count);
+  const int wanted = (parts & DVI_RECORD_INVARIANTS) != 0;
   dvi_status status = v != NULL && value != NULL
-                          ? derive_velocities(r, e, v)
+                          ? derive_rows(r, e, v, wanted ? value : NULL)
                           : dvi__fail(DVI_NO_MEMORY, "recording: no memory for %lld rows",
                                       (long long)r->rows);
-  if (status == DVI_OK && (parts & DVI_RECORD_INVARIANTS) != 0)
-    status = derive_invariants(r, e, v, value);
   if (status == DVI_OK) keep_part(r, DVI__ROW_V, parts, &v);
   if (status == DVI_OK) keep_part(r, DVI__ROW_INVARIANTS, parts, &value);
   dvi__release(v);

@@ -12,7 +12,6 @@
 #include "integrator/integrator_struct.h"
 #include "integrator/run.h"
 #include "record/recording.h"
-#include "system/evaluate/evaluator.h"
 #include "system/evaluate/dynamics.h"
 
 enum {
@@ -163,17 +162,13 @@ static dvi_status open_trail(void *user, dvi__trail *trail)
 /* Evaluate the parts of the open row that follow from its state, as measure_state does. */
 static dvi_status derive_row(const record *r)
 {
-  dvi_integrator *I = r->integrator;
-  const dvi_recording *made = r->recording;
-  const double *t = dvi__recording_row(made, DVI__ROW_T), *q = dvi__recording_row(made, DVI__ROW_Q),
-               *p = dvi__recording_row(made, DVI__ROW_P);
+  dvi_recording *made = r->recording;
   double *v = dvi__recording_row(made, DVI__ROW_V),
          *invariants = dvi__recording_row(made, DVI__ROW_INVARIANTS);
   set_part(r, DVI__ROW_STEP, r->run->h);
   if (v == NULL && invariants == NULL) return DVI_OK;
-  if (v == NULL) v = r->point;
-  DVI_TRY(dvi__legendre_inverse(I->evaluator, *t, q, p, v));
-  return invariants != NULL ? dvi__invariants(I->evaluator, *t, q, v, p, invariants) : DVI_OK;
+  return dvi__recording_derive_row(made, made->rows, r->integrator->evaluator,
+                                   v != NULL ? v : r->point, invariants);
 }
 
 static dvi_status close_trail(void *user, const dvi__trail *trail)

@@ -3,6 +3,8 @@
 #define DVI_RECORD_RECORDING_H
 #include <dvi/run.h>
 
+#include "system/evaluate/evaluator.h"
+
 /* The parts of a row, of which part k has the bit 1 << k in dvi_record_part. */
 typedef enum dvi__row_part {
   DVI__ROW_T,
@@ -49,6 +51,11 @@ static inline double *dvi__recording_row(const dvi_recording *recording, dvi__ro
   const dvi__part_rows *rows = &recording->part[part];
   return rows->number != NULL ? rows->number + recording->rows * rows->width : NULL;
 }
+
+/* Evaluate the velocity v [nv], from a guess, and invariants unless they are NULL, of a row that
+ * has coordinates and momenta. */
+dvi_status dvi__recording_derive_row(const dvi_recording *recording, int64_t row,
+                                     dvi__evaluator *evaluator, double *v, double *invariants);
 
 /* Keep an event. */
 dvi_status dvi__recording_add_event(dvi_recording *recording, int event, double t, const double *q,
