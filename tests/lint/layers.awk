@@ -81,7 +81,7 @@ BEGIN {
   sees["scene/field"] = sees["scene/sections"] " scene/sections"
   sees["scene/elastic"] = sees["scene/field"] " scene/field"
   sees["scene/density"] = sees["scene/sections"] " scene/sections"
-  sees["scene"] = sees["scene/field"] " scene/field scene/elastic scene/density"
+  sees["scene"] = sees["scene/field"] " scene/field scene/elastic scene/density core"
   sees["scene/emit"] = sees["scene"] " scene"
   # So does the library of studies.
   sees["study"] = "core"
