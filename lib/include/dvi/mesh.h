@@ -87,6 +87,23 @@ typedef struct dvi_view {
   int degree;           /**< of the cells: 0 for vertices, or the mesh's dimension */
 } dvi_view;
 
+/** Processes that hold a mesh together, each of them a share of it, and how they speak with each
+ *  other. All of them call each function in the same order. A function returns 0, or another number
+ *  on all processes if it failed on one of them. */
+typedef struct dvi_ranks {
+  size_t size; /**< sizeof(dvi_ranks) */
+  int rank;    /**< the number of this process, from 0 */
+  int count;   /**< the number of processes, 1 or more */
+  /** Set the values [cells] of this share's cells of a degree, of which other processes are the
+   *  owners, to those that the owners have. */
+  int (*refresh)(int degree, double *values, void *user);
+  /** Set numbers [count] to their sums over all processes. They do not overflow. */
+  int (*sum)(int count, int64_t *number, void *user);
+  /** Set numbers [count] to the largest ones of all processes. */
+  int (*largest)(int count, double *number, void *user);
+  void *user;
+} dvi_ranks;
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -182,6 +199,31 @@ dvi_status dvi_mesh_write(const dvi_mesh *mesh, const char *path, int views, con
  *  @retval (others)          as dvi_mesh_write */
 dvi_status dvi_series_write(const char *path, int64_t count, const double *time,
                             const char *const *file);
+
+/** Cut the share of one process out of a mesh.
+ *
+ *  A share has the n-cells that its process owns and all others with which these have a vertex in
+ *  common. A k-cell belongs to the owner of the first n-cell around it. Cells keep their order, and
+ *  parts are those of the whole mesh, "boundary" as well. Fields and leapfrog take a share as they
+ *  take a mesh. All processes make the same calls then, and have the digits of one process. What
+ *  cannot be done with shares is refused with DVI_UNSUPPORTED.
+ *
+ *  @param owner  [n-cells] the process to which each of them belongs. Each process owns a cell
+ *  @param ranks  the processes. Copied
+ *  @retval DVI_BAD_ARGUMENT  an owner is out of range, a process has no cell, or an argument is not
+ *                            as described. The arguments are those of all processes, and the result
+ *                            is the same on all
+ *  @retval DVI_NO_MEMORY     there is no memory */
+dvi_status dvi_mesh_cut(const dvi_mesh *mesh, const int *owner, const dvi_ranks *ranks,
+                        dvi_mesh **share);
+
+/** Return the numbers [cells], ascending, that the k-cells of a share have in the whole mesh. Owned
+ *  by the share. NULL if the mesh is none, or k is not from 0 to n. */
+const int64_t *dvi_mesh_share_numbers(const dvi_mesh *share, int k);
+
+/** Return the processes [cells] to which the k-cells of a share belong. Owned by the share. NULL if
+ *  the mesh is none, or k is not from 0 to n. */
+const int *dvi_mesh_share_owners(const dvi_mesh *share, int k);
 
 /** Let one more owner share the mesh. Each owner calls dvi_mesh_destroy. Returns the mesh. */
 dvi_mesh *dvi_mesh_share(const dvi_mesh *mesh);

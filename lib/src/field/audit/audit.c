@@ -7,6 +7,7 @@
 #include "field/audit/pinch.h"
 #include "field/forms/gram.h"
 #include "field/forms/star.h"
+#include "field/mesh/share.h"
 #include "field/mesh/volume.h"
 
 enum { HOLES_MAX = 200000 };
@@ -163,7 +164,7 @@ static dvi_status find_frequency(const dvi_star *star, int k, dvi_mesh_report *r
   DVI_TRY(dvi__stiffness(star, k, &stiffness));
   const dvi_matrix K = dvi__csr_view(&stiffness, 1);
   const dvi__pencil pencil = {.K = &K, .M = &M, .dimension = star->mesh->n};
-  const dvi_status status = dvi__largest_eigenvalue(&pencil, &bound);
+  const dvi_status status = dvi__largest_eigenvalue(&pencil, NULL, &bound);
   dvi__csr_clear(&stiffness);
   if (status != DVI_OK) return status;
   d->fastest = sqrt(bound);
@@ -232,6 +233,7 @@ dvi_status dvi_mesh_audit(const dvi_mesh *mesh, const dvi_audit_options *options
   if (options == NULL) options = &defaults;
   if (options->size != sizeof *options)
     return dvi__fail(DVI_BAD_ARGUMENT, "audit: set options.size to sizeof(dvi_audit_options)");
+  DVI_TRY(dvi__refuse_share(mesh, "audit: a report"));
   *report = (dvi_mesh_report){.dimension = mesh->n,
                               .space = mesh->space,
                               .branching = mesh->branching,

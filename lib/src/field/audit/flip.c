@@ -8,6 +8,7 @@
 #include "core/status.h"
 #include "field/forms/star.h"
 #include "field/mesh/complex.h"
+#include "field/mesh/share.h"
 #include "field/mesh/volume.h"
 
 /* In a plane flips come to an end, and on a surface they need not. */
@@ -187,6 +188,7 @@ dvi_status dvi_mesh_flip(const dvi_mesh *mesh, dvi_mesh **flipped, int64_t *flip
   if (mesh == NULL || flipped == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "flip: a mesh and a place for the new one are needed");
   *flipped = NULL;
+  DVI_TRY(dvi__refuse_share(mesh, "flip: a flip of edges"));
   if (mesh->n != 2 || mesh->kind != DVI_SIMPLICES)
     return dvi__fail(DVI_UNSUPPORTED,
                      "flip: the cells are no triangles: take the barycentric or Whitney's star, or "

@@ -9,6 +9,7 @@
 #include "field/forms/star.h"
 #include "field/mesh/connected.h"
 #include "field/mesh/part.h"
+#include "field/mesh/share.h"
 #include "field/mesh/volume.h"
 
 static const double negligible = 1e-10;
@@ -195,6 +196,7 @@ dvi_status dvi_mesh_glue(const dvi_mesh *mesh, dvi_mesh **glued)
   if (mesh == NULL || glued == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "glue: a mesh and a place for the new one are needed");
   *glued = NULL;
+  DVI_TRY(dvi__refuse_share(mesh, "glue: a seam"));
   if (mesh->kind != DVI_SIMPLICES || mesh->space != mesh->n || mesh->n < 2)
     return dvi__fail(DVI_UNSUPPORTED, "glue: the cells are no simplices of two dimensions or more "
                                       "that fill their space");

@@ -12,6 +12,7 @@
 #include "field/connection/cell.h"
 #include "field/connection/connection.h"
 #include "field/connection/lengths.h"
+#include "field/mesh/share.h"
 #include "num/simd/fused.h"
 
 /* Own rotations may be wrong by this. */
@@ -133,6 +134,7 @@ dvi_status dvi_connection_create(const dvi_mesh *mesh, const dvi_connection_opti
     return dvi__fail(DVI_BAD_ARGUMENT, "curvature: options of size %zu, %zu expected",
                      options->size, sizeof *options);
   DVI_TRY(dvi__check_metric(mesh, options->length));
+  DVI_TRY(dvi__refuse_share(mesh, "curvature: a connection"));
   dvi_connection *c = DVI_NEW(dvi_connection, 1);
   if (c == NULL) return no_memory();
   c->mesh = dvi_mesh_share(mesh);

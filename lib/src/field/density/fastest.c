@@ -28,7 +28,7 @@ static dvi_status find_of_mass(const dvi_density *density, const dvi_matrix *K, 
   const dvi__pencil pencil = {.K = K, .M = &M, .dimension = density->dimension};
   if (!has_positive_diagonal(&density->mass)) return DVI_OK;
   double bound = 0;
-  const dvi_status status = dvi__largest_eigenvalue(&pencil, &bound);
+  const dvi_status status = dvi__largest_eigenvalue(&pencil, NULL, &bound);
   if (status == DVI_SINGULAR) return DVI_OK; /* an indefinite mass has no largest frequency */
   const double roundoff = 1e-12 * dvi__largest_entry(K) / dvi__largest_entry(&M);
   *omega = isfinite(bound) && bound > roundoff ? sqrt(bound) : 0;

@@ -6,6 +6,7 @@
 #include "core/status.h"
 #include "field/elastic/cell.h"
 #include "field/elastic/create.h"
+#include "field/mesh/share.h"
 #include "num/eigen.h"
 
 /* ---- the mesh ---- */
@@ -28,6 +29,7 @@ dvi_status dvi__solid_take_mesh(dvi_elastic *e, const dvi_mesh *mesh)
       return dvi__fail(DVI_UNSUPPORTED,
                        "elastic: axis %d of the mesh is one of time: a solid is in space alone", i);
   }
+  DVI_TRY(dvi__refuse_share(mesh, "elastic: a solid"));
   e->mesh = dvi_mesh_share(mesh);
   e->n = mesh->n;
   e->vertices = mesh->count[0];

@@ -35,7 +35,7 @@ dvi_status dvi__solid_find_fastest(const dvi_elastic *e, const dvi__csr *K, cons
   const dvi_matrix stiffness = dvi__csr_view(K, 1), diagonal = view_diagonal(e->unknowns, mass);
   const dvi__pencil pencil = {.K = &stiffness, .M = &diagonal, .dimension = e->n};
   if (e->fastest > 0) return DVI_OK;
-  DVI_TRY(dvi__largest_eigenvalue(&pencil, &bound));
+  DVI_TRY(dvi__largest_eigenvalue(&pencil, NULL, &bound));
   ((dvi_elastic *)e)->fastest = sqrt(fmax(bound, 0)); /* the same in every thread */
   return DVI_OK;
 }

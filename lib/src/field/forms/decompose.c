@@ -13,6 +13,7 @@
 #include "core/status.h"
 #include "field/algebra/conjugate.h"
 #include "field/forms/hodge.h"
+#include "field/mesh/share.h"
 
 /* Part of a right side that conjugate gradients may leave. */
 static const double roundoff = 1e-15;
@@ -173,6 +174,7 @@ dvi_status dvi__hodge_begin(const dvi_star *star, int k, const char *held, dvi__
                      "%d",
                      star != NULL ? star->mesh->n : 0, k);
   const dvi_mesh *mesh = star->mesh;
+  DVI_TRY(dvi__refuse_share(mesh, "forms: a decomposition"));
   DVI_TRY(check_held(mesh, held));
   DVI_TRY(check_definite(star, k));
   *h = (dvi__hodge){.star = star, .k = k, .held = held};

@@ -15,6 +15,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "field/forms/star.h"
+#include "field/mesh/share.h"
 #include "field/mesh/volume.h"
 
 enum { AXES = DVI_MESH_DIMENSION_MAX, MOST_ENTRIES = 1 << 27 };
@@ -169,6 +170,7 @@ static dvi_status make(grid *g, dvi__csr *matrix)
 dvi_status dvi__spectral_check(const dvi_mesh *mesh)
 {
   grid g = {.mesh = mesh, .k = mesh->n};
+  DVI_TRY(dvi__refuse_share(mesh, "star: the spectral star"));
   dvi_status status = measure_boxes(&g);
   if (status == DVI_OK) status = place_cells(&g);
   dvi__release(g.at);

@@ -11,6 +11,7 @@
 #include "core/status.h"
 #include "field/mesh/homology.h"
 #include "field/mesh/mesh.h"
+#include "field/mesh/share.h"
 
 static const int64_t prime = 2147483629; /* 2^31 - 19 */
 
@@ -154,6 +155,7 @@ dvi_status dvi_mesh_betti(const dvi_mesh *mesh, int64_t *betti)
   int64_t rank[DVI__DEGREES + 1] = {0}; /* of the boundary of k-cells */
   if (mesh == NULL || betti == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "mesh: a mesh and an array are needed");
+  DVI_TRY(dvi__refuse_share(mesh, "mesh: a Betti number"));
   reduction r;
   dvi_status status = create(mesh, &r);
   for (int k = mesh->n; k > 0 && status == DVI_OK; k--)

@@ -5,6 +5,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "field/mesh/share.h"
 #include "field/mesh/volume.h"
 
 /* A point counts as inside if its weights are negative by no more than this. */
@@ -49,7 +50,8 @@ static double measure_axis(bins *b, int axis, double *extent)
     (void)bound_cell(mesh, c, axis, &low, &high);
     sum += high - low;
   }
-  b->origin[axis] = least;
+  /* shares reduce points to the same period as the whole mesh */
+  b->origin[axis] = mesh->period[axis] > 0 ? dvi__least_coordinate(mesh, axis, least) : least;
   *extent = mesh->period[axis] > 0 ? mesh->period[axis] : most - least;
   return sum / (double)mesh->count[b->n];
 }

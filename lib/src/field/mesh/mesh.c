@@ -10,6 +10,7 @@
 #include "field/mesh/coface.h"
 #include "field/mesh/complex.h"
 #include "field/mesh/part.h"
+#include "field/mesh/share.h"
 #include "field/mesh/volume.h"
 
 /* ---- names for messages ---- */
@@ -219,6 +220,7 @@ void dvi_mesh_destroy(dvi_mesh **mesh)
   *mesh = NULL;
   if (atomic_fetch_sub(&m->owners, 1) > 1) return;
   dvi__parts_clear(m);
+  dvi__share_destroy(m->share);
   for (int k = 0; k < DVI__DEGREES; k++) {
     dvi__release(m->corner[k]);
     dvi__release(m->facet[k]);

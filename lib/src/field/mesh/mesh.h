@@ -11,9 +11,11 @@ enum { DVI__DEGREES = DVI_MESH_DIMENSION_MAX + 1 };
 typedef struct dvi__part {
   char *name;
   int degree;
-  int64_t count[DVI__DEGREES];
+  int64_t count[DVI__DEGREES], total[DVI__DEGREES]; /* here, and of the whole mesh */
   int *cell[DVI__DEGREES];
 } dvi__part;
+
+typedef struct dvi__share dvi__share;
 
 struct dvi_mesh {
   atomic_int owners;
@@ -30,6 +32,7 @@ struct dvi_mesh {
   int64_t branching;          /* a facet of more than two n-cells, or -1 */
   dvi__part *part;
   int parts;
+  dvi__share *share; /* of a larger mesh, or NULL (field/mesh/share.h) */
 };
 
 /* Name a k-cell by its number and its vertices, for messages, in 96 characters. */
@@ -40,6 +43,9 @@ dvi__cell_name dvi__name_cell(const dvi_mesh *mesh, int k, int64_t cell);
 
 /* Name a k-cell in the singular, "vertex", "edge", "triangle" and so on. */
 const char *dvi__degree_name(dvi_cell_kind kind, int k);
+
+/* Return the number of k-cells that a part of the whole mesh has, or -1 if there is no such part. */
+int64_t dvi__part_total(const dvi_mesh *mesh, const char *name, int k);
 
 /* Give the difference of two points, b - a, in a mesh whose space may repeat itself. */
 void dvi__mesh_difference(const dvi_mesh *mesh, int a, int b, double *difference);

@@ -18,7 +18,7 @@ static dvi_status take_marked(const dvi_mesh *mesh, dvi__part *part, int k, cons
 {
   int64_t count = 0;
   for (int64_t c = 0; c < mesh->count[k]; c++) count += marked[c];
-  part->count[k] = count;
+  part->count[k] = part->total[k] = count;
   part->cell[k] = DVI_NEW(int, count);
   if (part->cell[k] == NULL) return no_memory(part->name);
   for (int64_t c = 0, i = 0; c < mesh->count[k]; c++)
@@ -168,7 +168,7 @@ static dvi_status create_all(dvi_mesh *mesh)
   for (int64_t i = 0; i < largest; i++) numbers[i] = (int)i;
   for (int k = 0; k <= mesh->n; k++) {
     part->cell[k] = numbers; /* of all degrees */
-    part->count[k] = mesh->count[k];
+    part->count[k] = part->total[k] = mesh->count[k];
   }
   return name_part(part, "all", mesh->n);
 }
@@ -220,27 +220,59 @@ dvi_status dvi__part_add(dvi_mesh *mesh, const char *name, int degree, char *mar
   return take_closure(mesh, more + parts, marked);
 }
 
+dvi_status dvi__parts_resize(dvi_mesh *mesh, int parts)
+{
+  dvi__parts_clear(mesh);
+  mesh->parts = 0;
+  mesh->part = DVI_NEW(dvi__part, parts);
+  if (mesh->part == NULL) return no_memory("all");
+  mesh->parts = parts;
+  return DVI_OK;
+}
+
+dvi_status dvi__part_take(dvi_mesh *mesh, int p, const dvi__part *whole, int k, const char *marked)
+{
+  dvi__part *part = mesh->part + p;
+  if (part->name == NULL) DVI_TRY(name_part(part, whole->name, whole->degree));
+  DVI_TRY(take_marked(mesh, part, k, marked));
+  part->total[k] = whole->total[k];
+  return DVI_OK;
+}
+
 void dvi__parts_clear(dvi_mesh *mesh)
 {
   for (int p = 0; p < mesh->parts; p++) {
     dvi__part *part = mesh->part + p;
     dvi__release(part->name);
-    for (int k = 0; k <= (p == ALL ? 0 : DVI_MESH_DIMENSION_MAX); k++) dvi__release(part->cell[k]);
+    const int is_one_list = p == ALL && part->cell[0] == part->cell[mesh->n];
+    for (int k = 0; k <= (is_one_list ? 0 : mesh->n); k++) dvi__release(part->cell[k]);
   }
   dvi__release(mesh->part);
 }
 
-const int *dvi_mesh_part_cells(const dvi_mesh *mesh, const char *name, int k, int64_t *count)
+static const dvi__part *find_part(const dvi_mesh *mesh, const char *name)
 {
   int p = 0;
+  while (p < mesh->parts && strcmp(mesh->part[p].name, name) != 0) p++;
+  return p < mesh->parts ? mesh->part + p : NULL;
+}
+
+const int *dvi_mesh_part_cells(const dvi_mesh *mesh, const char *name, int k, int64_t *count)
+{
   int64_t unasked;
   if (count == NULL) count = &unasked;
   *count = -1;
   if (mesh == NULL || name == NULL || k < 0 || k > mesh->n) return NULL;
-  while (p < mesh->parts && strcmp(mesh->part[p].name, name) != 0) p++;
-  if (p == mesh->parts) return NULL;
-  *count = mesh->part[p].count[k];
-  return mesh->part[p].cell[k];
+  const dvi__part *part = find_part(mesh, name);
+  if (part == NULL) return NULL;
+  *count = part->count[k];
+  return part->cell[k];
+}
+
+int64_t dvi__part_total(const dvi_mesh *mesh, const char *name, int k)
+{
+  const dvi__part *part = find_part(mesh, name);
+  return part != NULL ? part->total[k] : -1;
 }
 
 const char *dvi_mesh_part_name(const dvi_mesh *mesh, int i)

@@ -4,6 +4,7 @@
 
 #include "core/status.h"
 #include "field/avi/march.h"
+#include "field/mesh/share.h"
 #include "field/step/bound.h"
 #include "field/step/leapfrog.h"
 #include "field/tents/tents.h"
@@ -74,7 +75,8 @@ static dvi_status prepare(const dvi_field *field, const dvi_march_options *optio
                      "march: %s is for meshes of boxes; on simplices the same method is called "
                      "bossavit-kettunen",
                      (*found)->name);
-  return DVI_OK;
+  return (*found)->stability != NULL ? dvi__refuse_share(field->mesh, "march: avi or tents")
+                                     : DVI_OK;
 }
 
 dvi_status dvi_march_create(const dvi_field *field, const dvi_march_options *options,

@@ -21,6 +21,7 @@
 #include "field/algebra/definite.h"
 #include "field/algebra/random.h"
 #include "field/forms/star.h"
+#include "field/mesh/share.h"
 #include "field/model/field.h"
 
 /* Two marches, and room for the forms of each. */
@@ -477,6 +478,7 @@ dvi_status dvi_field_laws(const dvi_field *field, const dvi_march_options *optio
   if (field == NULL || law == NULL || count == NULL || steps < 2)
     return dvi__fail(DVI_BAD_ARGUMENT, "laws: a field, at least 2 steps, and room for the laws are "
                                        "needed");
+  DVI_TRY(dvi__refuse_share(field->mesh, "laws: a measurement"));
   laws s = {
       .field = field, .how = options != NULL ? *options : defaults, .steps = steps, .law = law};
   s.how.potential = 1;

@@ -5,6 +5,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "field/mesh/connected.h"
+#include "field/mesh/share.h"
 #include "field/model/field.h"
 
 enum { PLACE_SIZE = 320 };
@@ -78,12 +79,16 @@ dvi_status dvi__field_number(dvi_field *field)
     if (field->number[v] >= 0) field->unknown[count++] = (int)v;
   for (int i = 0; i < count; i++) field->number[field->unknown[i]] = i;
   field->unknowns = count;
-  if (count > 0) return DVI_OK;
+  for (int i = 0; i < count; i++)
+    field->whole_unknowns += dvi__owns(field->mesh, field->degree, field->unknown[i]);
+  DVI_TRY(dvi__count_all(field->mesh, 1, &field->whole_unknowns));
+  if (field->whole_unknowns > 0) return DVI_OK;
   return dvi__fail(DVI_BAD_ARGUMENT, "field: all %lld %s are fixed, and nothing is unknown",
-                   (long long)field->cells, field->degree == 0 ? "vertices" : "edges");
+                   (long long)dvi__whole_count(field->mesh, field->degree),
+                   field->degree == 0 ? "vertices" : "edges");
 }
 
-dvi_status dvi__field_fix(dvi_field *field, const dvi_wave_terms *terms)
+static dvi_status fix(dvi_field *field, const dvi_wave_terms *terms)
 {
   field->unknown = DVI_NEW(int, field->cells);
   field->number = DVI_NEW(int, field->cells);
@@ -95,6 +100,12 @@ dvi_status dvi__field_fix(dvi_field *field, const dvi_wave_terms *terms)
     if (terms->condition[i].kind == DVI_FIXED)
       DVI_TRY(fix_part(field, terms->condition + i, field->fixed));
   }
+  return DVI_OK;
+}
+
+dvi_status dvi__field_fix(dvi_field *field, const dvi_wave_terms *terms)
+{
+  DVI_TRY(dvi__agree(field->mesh, fix(field, terms)));
   return dvi__field_number(field);
 }
 

@@ -7,6 +7,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "field/forms/star.h"
+#include "field/mesh/share.h"
 #include "field/model/field.h"
 
 static dvi_status spread_density(const dvi_field *field, const dvi_current *current,
@@ -89,7 +90,8 @@ dvi_status dvi__maxwell_make_currents(dvi_field *field, const dvi_maxwell_terms 
   dvi_status status = DVI_OK;
   while (status == DVI_OK && field->currents < terms->currents) {
     const int i = field->currents++;
-    status = make_current(field, terms->current + i, &W, field->current + i);
+    status = dvi__agree(field->mesh,
+                        make_current(field, terms->current + i, &W, field->current + i));
   }
   dvi__csr_clear(&bare);
   return status;

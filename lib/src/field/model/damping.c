@@ -12,6 +12,7 @@
 #include "core/status.h"
 #include "field/forms/star.h"
 #include "field/mesh/complex.h"
+#include "field/mesh/share.h"
 #include "field/model/field.h"
 
 static const double roundoff = 1e-14; /* of an entry, beside the largest one */
@@ -52,8 +53,9 @@ static dvi_status mark_wall(rim *r, const dvi_wall *wall)
   for (int64_t i = 0; i < count; i++) {
     if (mesh->coface[2 * (int64_t)facet[i] + 1] >= 0) continue;
     r->is_absorbing[facet[i]] = 1;
-    found++;
+    found += dvi__owns(mesh, mesh->n - 1, facet[i]);
   }
+  DVI_TRY(dvi__count_all(mesh, 1, &found));
   if (found > 0) return DVI_OK;
   return dvi__fail(DVI_BAD_ARGUMENT,
                    "maxwell: the absorbing wall on part \"%s\" has no facet of the boundary",
@@ -191,26 +193,35 @@ static dvi_status make_wall_matrix(const rim *r, dvi__csr *damping)
   return status;
 }
 
+/* A share without walls has no losses there, but it has the matrix of those that have. */
+static dvi_status make_rim_matrix(rim *r, dvi__csr *damping)
+{
+  const dvi_mesh *mesh = r->field->mesh;
+  if (memchr(r->is_absorbing, 1, (size_t)mesh->count[mesh->n - 1]) == NULL)
+    return dvi__csr_allocate(r->field->unknowns, r->field->unknowns, 0, damping);
+  DVI_TRY(make_rim(r));
+  return make_wall_matrix(r, damping);
+}
+
 static dvi_status make_walls(dvi_field *field, const dvi_maxwell_terms *terms, dvi__csr *damping)
 {
   rim r = {.field = field};
   int count = 0;
   for (int i = 0; i < terms->walls; i++) count += terms->wall[i].kind == DVI_ABSORBING;
   if (count == 0) return DVI_OK;
-  dvi_status status = allocate(&r);
+  dvi_status status = dvi__agree(field->mesh, allocate(&r));
   for (int i = 0; i < terms->walls && status == DVI_OK; i++)
     if (terms->wall[i].kind == DVI_ABSORBING) status = mark_wall(&r, terms->wall + i);
-  if (status == DVI_OK) status = make_rim(&r);
-  if (status == DVI_OK) status = make_wall_matrix(&r, damping);
+  if (status == DVI_OK) status = make_rim_matrix(&r, damping);
   clear_rim(&r);
   return status;
 }
 
 /* ---- conductors ---- */
 
-static dvi_status check_conductivity(const dvi_field *field, const double *sigma, int *is_zero)
+static dvi_status check_conductivity(const dvi_field *field, const double *sigma, int64_t *cells)
 {
-  *is_zero = 1;
+  *cells = 0;
   for (int64_t c = 0; c < field->mesh->count[field->mesh->n]; c++) {
     if (!(sigma[c] >= 0) || !isfinite(sigma[c])) {
       const dvi__cell_name name = dvi__name_cell(field->mesh, field->mesh->n, c);
@@ -219,7 +230,7 @@ static dvi_status check_conductivity(const dvi_field *field, const double *sigma
                        "possible",
                        sigma[c], name.text);
     }
-    *is_zero = *is_zero && sigma[c] == 0;
+    *cells += sigma[c] != 0;
   }
   return DVI_OK;
 }
@@ -227,9 +238,10 @@ static dvi_status check_conductivity(const dvi_field *field, const double *sigma
 static dvi_status make_conductors(dvi_field *field, const double *sigma, dvi__csr *damping)
 {
   dvi__csr S = {0};
-  int is_zero;
-  DVI_TRY(check_conductivity(field, sigma, &is_zero));
-  if (is_zero) return DVI_OK;
+  int64_t conductors;
+  DVI_TRY(dvi__agree(field->mesh, check_conductivity(field, sigma, &conductors)));
+  DVI_TRY(dvi__count_all(field->mesh, 1, &conductors));
+  if (conductors == 0) return DVI_OK;
   DVI_TRY(dvi__star_with_factor(field->star, field->degree, sigma, &S));
   const dvi_matrix view = dvi__csr_view(&S, 1);
   const dvi_status status = dvi__field_select(field, &view, damping);
@@ -247,9 +259,11 @@ static dvi_status check_damping(dvi_field *field)
   double most = 0;
   if (S->rows == 0 || !field->mass_is_diagonal) return DVI_OK;
   for (int64_t e = 0; e < S->start[S->rows]; e++) most = fmax(most, S->value[e]);
+  DVI_TRY(dvi__largest_of_all(field->mesh, 1, &most));
   for (int64_t e = 0; e < S->start[S->rows]; e++) {
     if (S->value[e] >= 0) continue;
-    if (S->value[e] < -roundoff * most) {
+    if (S->value[e] < -roundoff * most &&
+        dvi__owns(field->mesh, field->degree, field->unknown[S->column[e]])) {
       const dvi__cell_name name = dvi__name_cell(field->mesh, field->degree,
                                                  field->unknown[S->column[e]]);
       return dvi__fail(DVI_SINGULAR,
@@ -282,6 +296,6 @@ static dvi_status make_damping(dvi_field *field, const dvi_maxwell_terms *terms)
 
 dvi_status dvi__maxwell_make_damping(dvi_field *field, const dvi_maxwell_terms *terms)
 {
-  DVI_TRY(make_damping(field, terms));
+  DVI_TRY(dvi__agree(field->mesh, make_damping(field, terms)));
   return check_damping(field);
 }

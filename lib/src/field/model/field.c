@@ -10,6 +10,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "field/forms/star.h"
+#include "field/mesh/share.h"
 #include "field/model/field.h"
 
 void dvi_field_destroy(dvi_field **field)
@@ -73,7 +74,8 @@ static dvi_status make_mass(dvi_field *field)
   DVI_TRY(dvi_star_matrix(field->star, field->degree, &M));
   for (int64_t i = 0; i < field->unknowns; i++) {
     const double entry = entry_at(&M, field->unknown[i]);
-    if (!(entry > 0)) return refuse_entry(field, field->degree, field->unknown[i], entry);
+    if (!(entry > 0) && dvi__owns(field->mesh, field->degree, field->unknown[i]))
+      return refuse_entry(field, field->degree, field->unknown[i], entry);
   }
   field->mass_is_diagonal = M.column == NULL;
   return dvi__field_select(field, &M, &field->mass);
@@ -85,31 +87,51 @@ static double diagonal_of(const dvi__csr *matrix, int64_t i)
   return at >= 0 ? fabs(matrix->value[at]) : 0;
 }
 
-/* Leave out what roundings made of zeros, as at the edges of Kuhn's simplices without a dual. They
- * are judged beside their own row and column, because other places may be much stiffer. */
-static void drop_roundings(dvi__csr *matrix)
+/* Let unknowns of other processes have the masses that these find. Their stars are cut. */
+static dvi_status refresh_mass(dvi_field *field, double *form)
 {
+  if (field->mesh->share == NULL) return DVI_OK;
+  if (!field->mass_is_diagonal) return dvi__refuse_share(field->mesh, "field: a Whitney star");
+  for (int64_t i = 0; i < field->unknowns; i++) form[field->unknown[i]] = field->mass.value[i];
+  DVI_TRY(dvi__refresh(field->mesh, field->degree, form));
+  for (int64_t i = 0; i < field->unknowns; i++) field->mass.value[i] = form[field->unknown[i]];
+  return DVI_OK;
+}
+
+/* Leave out what roundings made of zeros, as at the edges of Kuhn's simplices without a dual. They
+ * are judged beside their own row and column, because other places may be much stiffer. `diagonal`
+ * is [cells]. */
+static dvi_status drop_roundings(const dvi_field *field, double *diagonal, dvi__csr *matrix)
+{
+  const int *cell = field->unknown;
+  for (int64_t i = 0; i < matrix->rows; i++) diagonal[cell[i]] = diagonal_of(matrix, i);
+  DVI_TRY(dvi__refresh(field->mesh, field->degree, diagonal));
   for (int64_t i = 0; i < matrix->rows; i++)
     for (int64_t e = matrix->start[i]; e < matrix->start[i + 1]; e++) {
       const int j = matrix->column[e];
-      const double least = fmin(diagonal_of(matrix, i), diagonal_of(matrix, j));
+      const double least = fmin(diagonal[cell[i]], diagonal[cell[j]]);
       if (j != i && fabs(matrix->value[e]) < 1e-15 * least) matrix->value[e] = 0;
     }
   dvi__csr_drop_zeros(matrix);
+  return DVI_OK;
 }
 
 /* The load gets minus the columns of the fixed values f. Their own energy, f.K f/2 - load.f with
  * the load before that, is -f.K f/2 - load.f with the load after it. */
-static dvi_status make_stiffness(dvi_field *field, double *load)
+dvi_status dvi__field_make_matrices(dvi_field *field, double *load)
 {
   dvi__csr whole = {0};
-  DVI_TRY(dvi__stiffness(field->star, field->degree, &whole));
+  dvi_status status = make_mass(field);
+  if (status == DVI_OK) status = dvi__stiffness(field->star, field->degree, &whole);
   const dvi_matrix view = dvi__csr_view(&whole, 1);
   double *pull = DVI_NEW(double, field->cells);
-  dvi_status status = pull != NULL ? dvi__field_select(field, &view, &field->stiffness)
-                                   : dvi__fail(DVI_NO_MEMORY, "field: no memory for a load");
+  if (status == DVI_OK)
+    status = pull != NULL ? dvi__field_select(field, &view, &field->stiffness)
+                          : dvi__fail(DVI_NO_MEMORY, "field: no memory for a load");
+  status = dvi__agree(field->mesh, status);
+  if (status == DVI_OK) status = refresh_mass(field, pull);
+  if (status == DVI_OK) status = drop_roundings(field, pull, &field->stiffness);
   if (status == DVI_OK) {
-    drop_roundings(&field->stiffness);
     dvi_matrix_multiply(&view, 0, field->fixed, pull);
     for (int64_t v = 0; v < field->cells; v++) {
       load[v] -= pull[v];
@@ -119,12 +141,6 @@ static dvi_status make_stiffness(dvi_field *field, double *load)
   dvi__release(pull);
   dvi__csr_clear(&whole);
   return status;
-}
-
-dvi_status dvi__field_make_matrices(dvi_field *field, double *load)
-{
-  DVI_TRY(make_mass(field));
-  return make_stiffness(field, load);
 }
 
 /* ---- questions ---- */

@@ -30,6 +30,7 @@ typedef struct dvi__functional {
   int count;
   int *cell;
   double *weight;
+  int is_here; /* the process owns its place */
 } dvi__functional;
 
 /* What a probe measures: a value, the power through facets, or the energy in a part. */
@@ -61,15 +62,16 @@ struct dvi_field {
   int degree;           /* k */
   int is_wave;          /* the form is what is looked at, not its rate */
   int64_t cells, unknowns;
-  int *unknown;       /* [unknowns] k-cells */
-  int *number;        /* [cells] of the unknown at a cell, or -1 */
-  double *fixed;      /* [cells] values, 0 where they are not fixed */
-  double *load;       /* [unknowns] W f + b, less what the fixed values take away */
-  double rest;        /* energy of the fixed values alone */
-  double *weight;     /* [unknowns] sums of the rows of W */
-  double *point;      /* [unknowns*space] */
-  int *component;     /* [unknowns] number of the free component, or -1 */
-  int64_t components; /* without a fixed value */
+  int64_t whole_unknowns; /* of all processes, if the mesh is a share */
+  int *unknown;           /* [unknowns] k-cells */
+  int *number;            /* [cells] of the unknown at a cell, or -1 */
+  double *fixed;          /* [cells] values, 0 where they are not fixed */
+  double *load;           /* [unknowns] W f + b, less what the fixed values take away */
+  double rest;            /* energy of the fixed values alone */
+  double *weight;         /* [unknowns] sums of the rows of W */
+  double *point;          /* [unknowns*space] */
+  int *component;         /* [unknowns] number of the free component, or -1 */
+  int64_t components;     /* without a fixed value */
   dvi__csr mass, stiffness;
   dvi__csr damping;     /* S of the current S E. Without rows if there is none */
   int mass_is_diagonal; /* the damping is then diagonal, too */
@@ -144,7 +146,8 @@ dvi_status dvi__field_probe(const dvi_field *field, int i, dvi__field_sampler *s
                             const void *of, double *value);
 
 /* Make the functional of a form of degree k at a point, or at a place in an n-cell: the product of
- * `along` with its components. DVI_BAD_ARGUMENT if the point lies outside. */
+ * `along` with its components. DVI_BAD_ARGUMENT if the point lies outside. Of a share, all
+ * processes give the same point, and functionals are empty where its n-cell is not. */
 dvi_status dvi__functional_at(const dvi_mesh *mesh, int k, const double *at, const double *along,
                               dvi__functional *functional);
 dvi_status dvi__functional_make(const dvi_mesh *mesh, int k, int64_t cell, const double *place,

@@ -15,6 +15,7 @@
 #include "field/forms/rule.h"
 #include "field/forms/star.h"
 #include "field/mesh/normal.h"
+#include "field/mesh/share.h"
 #include "field/mesh/volume.h"
 #include "field/model/field.h"
 
@@ -197,11 +198,15 @@ static dvi_status add_facet(const facet *f)
 
 /* A part of n-cells stands for its facets on the boundary. Facets inside are an error elsewhere. */
 static dvi_status check_facets(const dvi_mesh *mesh, const char *part, const int *number,
-                               int64_t count)
+                               int64_t here)
 {
-  int64_t outside = 0, cells;
-  for (int64_t i = 0; i < count; i++) outside += mesh->coface[2 * (int64_t)number[i] + 1] < 0;
-  (void)dvi_mesh_part_cells(mesh, part, mesh->n, &cells);
+  const int64_t count = dvi__part_total(mesh, part, mesh->n - 1),
+                cells = dvi__part_total(mesh, part, mesh->n);
+  int64_t outside = 0;
+  for (int64_t i = 0; i < here; i++)
+    outside += mesh->coface[2 * (int64_t)number[i] + 1] < 0 &&
+               dvi__owns(mesh, mesh->n - 1, number[i]);
+  DVI_TRY(dvi__count_all(mesh, 1, &outside));
   if (outside > 0 && (outside == count || cells > 0)) return DVI_OK;
   return dvi__fail(DVI_BAD_ARGUMENT,
                    "field: a flux is given on part \"%s\", of whose %lld cells of degree %d "

@@ -9,6 +9,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "field/forms/star.h"
+#include "field/mesh/share.h"
 #include "field/model/field.h"
 
 /* ---- checks ---- */
@@ -87,10 +88,11 @@ static dvi_status check_permeability(const dvi_field *field)
   dvi_matrix M;
   DVI_TRY(dvi_star_matrix(field->star, field->degree + 1, &M));
   if (M.column != NULL) return DVI_OK;
-  int64_t worst = 0;
-  for (int64_t f = 1; f < M.rows; f++)
-    if (M.value[f] < M.value[worst]) worst = f;
-  if (M.value[worst] >= 0) return DVI_OK;
+  int64_t worst = -1;
+  for (int64_t f = 0; f < M.rows; f++)
+    if (dvi__owns(field->mesh, field->degree + 1, f) && (worst < 0 || M.value[f] < M.value[worst]))
+      worst = f;
+  if (worst < 0 || M.value[worst] >= 0) return DVI_OK;
   const dvi__cell_name name = dvi__name_cell(field->mesh, field->degree + 1, worst);
   return dvi__fail(DVI_SINGULAR,
                    "maxwell: M_%d has the entry %g at %s, so that waves would grow: take a "
@@ -103,11 +105,12 @@ static dvi_status check_permeability(const dvi_field *field)
 /* Hold the cells of an electric wall. One that has vertices alone would be lost without a word. */
 static dvi_status hold_wall(dvi_field *field, const dvi_wall *wall)
 {
-  int64_t count, vertices;
+  int64_t count;
   const int *cell = dvi_mesh_part_cells(field->mesh, wall->part, field->degree, &count);
-  (void)dvi_mesh_part_cells(field->mesh, wall->part, 0, &vertices);
   for (int64_t c = 0; c < count; c++) field->number[cell[c]] = -1;
-  if (count > 0 || vertices == 0) return DVI_OK;
+  if (dvi__part_total(field->mesh, wall->part, field->degree) > 0 ||
+      dvi__part_total(field->mesh, wall->part, 0) == 0)
+    return DVI_OK;
   return dvi__fail(DVI_BAD_ARGUMENT, "maxwell: the wall on part \"%s\" has no edge", wall->part);
 }
 
@@ -122,7 +125,7 @@ static dvi_status hold_conductors(dvi_field *field, const dvi_maxwell_terms *ter
     DVI_TRY(check_wall(field, terms->wall + i));
     if (terms->wall[i].kind == DVI_PEC) DVI_TRY(hold_wall(field, terms->wall + i));
   }
-  return dvi__field_number(field);
+  return DVI_OK;
 }
 
 static dvi_status make_matrices(dvi_field *field)
@@ -144,12 +147,15 @@ static dvi_status make(dvi_field *field, const dvi_maxwell_terms *terms)
   field->mesh = field->star->mesh;
   field->degree = terms->scalar || field->mesh->n == 1 ? 0 : 1;
   field->cells = field->mesh->count[field->degree];
-  DVI_TRY(hold_conductors(field, terms));
-  for (int k = field->degree; k <= field->degree + 1; k++) DVI_TRY(check_factors(field, k));
-  DVI_TRY(check_permeability(field));
+  DVI_TRY(dvi__agree(field->mesh, hold_conductors(field, terms)));
+  DVI_TRY(dvi__field_number(field));
+  dvi_status status = check_permeability(field);
+  for (int k = field->degree; k <= field->degree + 1 && status == DVI_OK; k++)
+    status = check_factors(field, k);
+  DVI_TRY(dvi__agree(field->mesh, status));
   DVI_TRY(make_matrices(field));
   if (field->degree == 0) DVI_TRY(dvi__field_find_components(field));
-  DVI_TRY(dvi__maxwell_make_damping(field, terms));
+  DVI_TRY(dvi__agree(field->mesh, dvi__maxwell_make_damping(field, terms)));
   DVI_TRY(dvi__maxwell_make_currents(field, terms));
   return dvi__maxwell_make_probes(field, terms);
 }

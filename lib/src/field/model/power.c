@@ -15,6 +15,7 @@
 #include "field/forms/evaluate.h"
 #include "field/forms/star.h"
 #include "field/mesh/normal.h"
+#include "field/mesh/share.h"
 #include "field/mesh/volume.h"
 #include "field/model/field.h"
 
@@ -144,7 +145,7 @@ static dvi_status make_surface(const dvi_maxwell_terms *terms, const char *part,
   s->is_absorbing = DVI_NEW(char, mesh->count[mesh->n - 1]);
   if (s->is_inside == NULL || s->is_absorbing == NULL)
     return dvi__fail(DVI_NO_MEMORY, "field: no memory for a probe");
-  s->has_cells = memchr(s->is_inside, 1, (size_t)mesh->count[mesh->n]) != NULL;
+  s->has_cells = dvi__part_total(mesh, part, mesh->n) > 0;
   for (int i = 0; i < terms->walls; i++) {
     if (terms->wall[i].kind != DVI_ABSORBING) continue;
     const int *number = dvi_mesh_part_cells(mesh, terms->wall[i].part, mesh->n - 1, &count);
@@ -185,11 +186,13 @@ dvi_status dvi__probe_make_flux(const dvi_field *field, const dvi_maxwell_terms 
   for (int64_t i = 0; i < count && status == DVI_OK; i++) {
     const int64_t cell = cell_behind(&s, number[i]);
     if (cell < 0) continue;
-    found++;
+    found += dvi__owns(field->mesh, field->mesh->n, cell);
     status = add_facet(&s, number[i], cell, probe);
   }
   clear(&s);
-  if (status != DVI_OK || found > 0) return status;
+  DVI_TRY(dvi__agree(field->mesh, status));
+  DVI_TRY(dvi__count_all(field->mesh, 1, &found));
+  if (found > 0) return DVI_OK;
   return dvi__probe_refuse(probe->name, part,
                            "which has neither facets of the boundary nor cells with others around "
                            "them");

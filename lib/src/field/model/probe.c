@@ -8,6 +8,7 @@
 #include "field/forms/component.h"
 #include "field/forms/evaluate.h"
 #include "field/forms/star.h"
+#include "field/mesh/share.h"
 #include "field/model/field.h"
 
 /* ---- functionals ---- */
@@ -23,7 +24,8 @@ dvi_status dvi__functional_make(const dvi_mesh *mesh, int k, int64_t cell, const
                                 const double *along, dvi__functional *functional)
 {
   *functional = (dvi__functional){.cell = DVI_NEW(int, DVI__LOCAL_FACES),
-                                  .weight = DVI_NEW(double, DVI__LOCAL_FACES)};
+                                  .weight = DVI_NEW(double, DVI__LOCAL_FACES),
+                                  .is_here = dvi__owns(mesh, mesh->n, cell)};
   if (functional->cell == NULL || functional->weight == NULL) {
     dvi__functional_clear(functional);
     return dvi__fail(DVI_NO_MEMORY, "field: no memory for a probe");
@@ -33,16 +35,34 @@ dvi_status dvi__functional_make(const dvi_mesh *mesh, int k, int64_t cell, const
   return DVI_OK;
 }
 
+/* Find the first n-cell of the whole mesh at a point. Only its owner knows that it is the first
+ * one. The number is that in the whole mesh, or -1. */
+static dvi_status find_first_cell(const dvi_mesh *mesh, const double *at, double *place,
+                                  int64_t *number)
+{
+  int cell = -1;
+  const dvi_status status = dvi_mesh_locate(mesh, 1, at, &cell, place);
+  double found = cell >= 0 && dvi__owns(mesh, mesh->n, cell)
+                     ? (double)dvi__whole_number(mesh, mesh->n, cell)
+                     : -1;
+  DVI_TRY(dvi__agree(mesh, status));
+  DVI_TRY(dvi__largest_of_all(mesh, 1, &found));
+  *number = (int64_t)found;
+  return DVI_OK;
+}
+
 dvi_status dvi__functional_at(const dvi_mesh *mesh, int k, const double *at, const double *along,
                               dvi__functional *functional)
 {
-  int cell;
   double place[DVI__CORNERS];
-  DVI_TRY(dvi_mesh_locate(mesh, 1, at, &cell, place));
-  if (cell < 0)
+  int64_t number;
+  DVI_TRY(find_first_cell(mesh, at, place, &number));
+  if (number < 0)
     return dvi__fail(DVI_BAD_ARGUMENT, "field: the point (%g, %g, %g) lies outside of the mesh",
                      at[0], mesh->n > 1 ? at[1] : 0.0, mesh->n > 2 ? at[2] : 0.0);
-  return dvi__functional_make(mesh, k, cell, place, along, functional);
+  const int64_t cell = dvi__find_number(mesh, mesh->n, number);
+  *functional = (dvi__functional){0};
+  return cell >= 0 ? dvi__functional_make(mesh, k, cell, place, along, functional) : DVI_OK;
 }
 
 void dvi__probe_clear(dvi__probe *probe)
@@ -79,7 +99,7 @@ static dvi_status make_energy(const dvi_field *field, const char *part, dvi__pro
 {
   char *inside = dvi__mark_cells(field->mesh, part);
   if (inside == NULL) return dvi__fail(DVI_NO_MEMORY, "field: no memory for a probe");
-  dvi_status status = memchr(inside, 1, (size_t)field->mesh->count[field->mesh->n]) != NULL
+  dvi_status status = dvi__part_total(field->mesh, part, field->mesh->n) > 0
                           ? DVI_OK
                           : dvi__probe_refuse(probe->name, part, "which has no cells");
   if (status == DVI_OK)
@@ -143,10 +163,12 @@ dvi_status dvi__maxwell_make_probes(dvi_field *field, const dvi_maxwell_terms *t
 
 /* ---- observe ---- */
 
-/* Where the values of forms come from. */
+/* Where the values of forms come from, and their sum. */
 typedef struct source {
+  const dvi_mesh *mesh;
   dvi__field_sampler *sample;
   const void *of;
+  dvi__accumulator total;
 } source;
 
 static dvi_status sum(const source *s, dvi_march_form form, const dvi__functional *functional,
@@ -159,21 +181,29 @@ static dvi_status sum(const source *s, dvi_march_form form, const dvi__functiona
   return DVI_OK;
 }
 
-static dvi_status power(const source *s, const dvi__probe *probe, double *value)
+static dvi_status add_value(source *s, const dvi__probe *probe)
 {
-  *value = 0;
+  double value;
+  if (!probe->value.is_here) return DVI_OK;
+  DVI_TRY(sum(s, probe->is_B ? DVI_FORM_B : DVI_FORM_E, &probe->value, &value));
+  dvi__accumulate(&s->total, value);
+  return DVI_OK;
+}
+
+static dvi_status add_power(source *s, const dvi__probe *probe)
+{
   for (int i = 0; i < probe->count; i++) {
     const dvi__product *product = probe->product + i;
     double E, other;
+    if (!product->factor[0].is_here) continue;
     DVI_TRY(sum(s, DVI_FORM_E, product->factor, &E));
     DVI_TRY(sum(s, product->is_square ? DVI_FORM_E : DVI_FORM_B, product->factor + 1, &other));
-    *value += E * other;
+    dvi__accumulate(&s->total, E * other);
   }
   return DVI_OK;
 }
 
-static dvi_status add_energy(const source *s, dvi_march_form form, const dvi__csr *matrix,
-                             double *energy)
+static dvi_status add_energy(source *s, dvi_march_form form, int degree, const dvi__csr *matrix)
 {
   const dvi_matrix M = dvi__csr_view(matrix, 1);
   double *values = DVI_NEW(double, 2 * M.rows);
@@ -182,23 +212,30 @@ static dvi_status add_energy(const source *s, dvi_march_form form, const dvi__cs
   const dvi_status status = s->sample(s->of, form, M.rows, NULL, values);
   if (status == DVI_OK) {
     dvi_matrix_multiply(&M, 0, values, product);
-    for (int64_t i = 0; i < M.rows; i++) *energy += 0.5 * values[i] * product[i];
+    for (int64_t i = 0; i < M.rows; i++)
+      if (dvi__owns(s->mesh, degree, i)) dvi__accumulate(&s->total, 0.5 * values[i] * product[i]);
   }
   dvi__release(values);
   return status;
+}
+
+static dvi_status add_energies(source *s, int degree, const dvi__probe *probe)
+{
+  DVI_TRY(add_energy(s, DVI_FORM_E, degree, &probe->electric));
+  return add_energy(s, DVI_FORM_B, degree + 1, &probe->magnetic);
 }
 
 dvi_status dvi__field_probe(const dvi_field *field, int i, dvi__field_sampler *sample,
                             const void *of, double *value)
 {
   const dvi__probe *probe = field->probe + i;
-  const source s = {.sample = sample, .of = of};
-  if (probe->kind == DVI__PROBE_VALUE)
-    return sum(&s, probe->is_B ? DVI_FORM_B : DVI_FORM_E, &probe->value, value);
-  if (probe->kind == DVI__PROBE_FLUX) return power(&s, probe, value);
-  *value = 0;
-  DVI_TRY(add_energy(&s, DVI_FORM_E, &probe->electric, value));
-  return add_energy(&s, DVI_FORM_B, &probe->magnetic, value);
+  source s = {.mesh = field->mesh, .sample = sample, .of = of};
+  const dvi_status status = probe->kind == DVI__PROBE_VALUE ? add_value(&s, probe)
+                            : probe->kind == DVI__PROBE_FLUX
+                                ? add_power(&s, probe)
+                                : add_energies(&s, field->degree, probe);
+  DVI_TRY(dvi__agree(field->mesh, status));
+  return dvi__sum_of_all(field->mesh, &s.total, value);
 }
 
 /* ---- states of a mechanical system ---- */

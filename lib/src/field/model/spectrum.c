@@ -5,6 +5,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "field/algebra/largest.h"
+#include "field/mesh/share.h"
 #include "field/model/spectrum.h"
 
 /* With free components K is semidefinite. A shift below 0, of the size of the lowest eigenvalues,
@@ -113,6 +114,7 @@ dvi_status dvi_field_modes(const dvi_field *field, const dvi_modes_options *opti
     return dvi__fail(DVI_BAD_ARGUMENT, "field: a field and eigenvalues are needed");
   if (options->size != sizeof defaults)
     return dvi__fail(DVI_BAD_ARGUMENT, "field: set options.size to sizeof(dvi_modes_options)");
+  DVI_TRY(dvi__refuse_share(field->mesh, "field: modes"));
   if (field->degree > 0) return dvi__field_modes_of_form(field, options, eigenvalue, mode, zeros);
   DVI_TRY(dvi_field_matrix(field, DVI_FIELD_STIFFNESS, &K));
   DVI_TRY(dvi_field_matrix(field, DVI_FIELD_MASS, &M));
@@ -133,18 +135,81 @@ dvi_status dvi_field_modes(const dvi_field *field, const dvi_modes_options *opti
   return status;
 }
 
-dvi_status dvi_field_fastest(const dvi_field *field, double *omega)
+/* ---- the fastest frequency ---- */
+
+/* The unknowns among those of the whole mesh, and room for a form. */
+typedef struct unknowns {
+  const dvi_field *field;
+  int64_t *number;
+  char *is_own;
+  double *form; /* [cells] */
+} unknowns;
+
+static dvi_status refresh_unknowns(void *of, double *x)
+{
+  const unknowns *u = of;
+  const dvi_field *f = u->field;
+  for (int64_t i = 0; i < f->unknowns; i++) u->form[f->unknown[i]] = x[i];
+  DVI_TRY(dvi__refresh(f->mesh, f->degree, u->form));
+  for (int64_t i = 0; i < f->unknowns; i++) x[i] = u->form[f->unknown[i]];
+  return DVI_OK;
+}
+
+static dvi_status sum_up(void *of, dvi__accumulator *sum, double *value)
+{
+  return dvi__sum_of_all(((const unknowns *)of)->field->mesh, sum, value);
+}
+
+static dvi_status find_largest(void *of, double *value)
+{
+  return dvi__largest_of_all(((const unknowns *)of)->field->mesh, 1, value);
+}
+
+static dvi_status prepare_unknowns(const dvi_field *f, unknowns *u)
+{
+  *u = (unknowns){.field = f,
+                  .number = DVI_NEW(int64_t, f->unknowns),
+                  .is_own = DVI_NEW(char, f->unknowns),
+                  .form = DVI_NEW(double, f->cells)};
+  if (!u->number || !u->is_own || !u->form)
+    return dvi__fail(DVI_NO_MEMORY, "field: no memory for a frequency");
+  for (int64_t i = 0; i < f->unknowns; i++) {
+    u->number[i] = dvi__whole_number(f->mesh, f->degree, f->unknown[i]);
+    u->is_own[i] = (char)dvi__owns(f->mesh, f->degree, f->unknown[i]);
+  }
+  return DVI_OK;
+}
+
+static dvi_status find_fastest(const dvi_field *field, double *bound)
 {
   dvi_matrix K, M;
+  unknowns u;
+  DVI_TRY(dvi_field_matrix(field, DVI_FIELD_STIFFNESS, &K));
+  DVI_TRY(dvi_field_matrix(field, DVI_FIELD_MASS, &M));
+  const dvi__pencil pencil = {.K = &K, .M = &M, .dimension = field->mesh->n};
+  dvi_status status = dvi__agree(field->mesh, prepare_unknowns(field, &u));
+  const dvi__rows rows = {.total = field->whole_unknowns,
+                          .number = u.number,
+                          .is_own = u.is_own,
+                          .refresh = refresh_unknowns,
+                          .sum = sum_up,
+                          .largest = find_largest,
+                          .of = &u};
+  if (status == DVI_OK) status = dvi__largest_eigenvalue(&pencil, &rows, bound);
+  dvi__release(u.number);
+  dvi__release(u.is_own);
+  dvi__release(u.form);
+  return status;
+}
+
+dvi_status dvi_field_fastest(const dvi_field *field, double *omega)
+{
   double bound;
   if (field == NULL || omega == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "field: a field and a place for a frequency are needed");
   *omega = field->fastest;
   if (*omega > 0) return DVI_OK;
-  DVI_TRY(dvi_field_matrix(field, DVI_FIELD_STIFFNESS, &K));
-  DVI_TRY(dvi_field_matrix(field, DVI_FIELD_MASS, &M));
-  const dvi__pencil pencil = {.K = &K, .M = &M, .dimension = field->mesh->n};
-  DVI_TRY(dvi__largest_eigenvalue(&pencil, &bound));
+  DVI_TRY(find_fastest(field, &bound));
   *omega = sqrt(fmax(bound, 0));
   ((dvi_field *)field)->fastest = *omega; /* the same number in every thread */
   return DVI_OK;

@@ -10,6 +10,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "field/algebra/definite.h"
+#include "field/mesh/share.h"
 #include "field/model/field.h"
 #include "field/model/newton.h"
 
@@ -253,6 +254,7 @@ dvi_status dvi_field_solve(const dvi_field *field, const dvi_field_solve_options
   statics s = {.field = field, .options = options != NULL ? options : &defaults};
   if (field == NULL || u == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "field: a field and its values are needed");
+  DVI_TRY(dvi__refuse_share(field->mesh, "field: a static problem"));
   if (!field->is_wave)
     return dvi__fail(DVI_UNSUPPORTED,
                      "field: static states are those of waves, 'field: wave', and this field is "

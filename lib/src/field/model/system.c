@@ -5,6 +5,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "field/mesh/share.h"
 #include "field/model/field.h"
 
 /* ---- the elastic potential, q.K q/2 - load.q - J(t).q + that of the fixed values ---- */
@@ -232,6 +233,7 @@ dvi_status dvi_field_system_terms(dvi_field *field, dvi_system_terms *terms)
 {
   if (field == NULL || terms == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "field: a field and a place for terms are needed");
+  DVI_TRY(dvi__refuse_share(field->mesh, "field: a mechanical system"));
   const int is_new = field->stiff_start == NULL;
   DVI_TRY(lay_out(field));
   double fastest;

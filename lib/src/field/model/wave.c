@@ -10,6 +10,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "field/forms/star.h"
+#include "field/mesh/share.h"
 #include "field/model/field.h"
 
 /* ---- checks ---- */
@@ -118,7 +119,7 @@ static dvi_status make(dvi_field *field, const dvi_wave_terms *terms)
   field->is_wave = 1;
   if (terms->potential != NULL) field->potential = *terms->potential;
   DVI_TRY(dvi__field_fix(field, terms));
-  DVI_TRY(make_equations(field, terms));
+  DVI_TRY(dvi__agree(field->mesh, make_equations(field, terms)));
   return dvi__field_find_components(field);
 }
 

@@ -6,6 +6,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "field/mesh/mesh.h"
+#include "field/mesh/share.h"
 #include "field/moving/moving.h"
 
 enum { AXES = 2, CORNERS };
@@ -148,6 +149,7 @@ static dvi_status bound(const dvi_moving_terms *terms, dvi_moving *m)
 dvi_status dvi__moving_take_mesh(const dvi_moving_terms *terms, dvi_moving *m)
 {
   DVI_TRY(check_mesh(terms->mesh));
+  DVI_TRY(dvi__refuse_share(terms->mesh, "moving: a density"));
   m->mesh = dvi_mesh_share(terms->mesh);
   DVI_TRY(check_jump(m));
   m->cells = (int)m->mesh->count[AXES];

@@ -4,6 +4,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "field/mesh/share.h"
 #include "field/mesh/volume.h"
 #include "field/regge/regge.h"
 
@@ -101,6 +102,7 @@ dvi_status dvi_regge_create(const dvi_regge_terms *terms, dvi_regge **regge)
     return dvi__fail(DVI_BAD_ARGUMENT, "regge: terms and a complex are needed");
   *regge = NULL;
   DVI_TRY(check_terms(terms));
+  DVI_TRY(dvi__refuse_share(terms->mesh, "regge: a complex"));
   dvi_regge *r = DVI_NEW(dvi_regge, 1);
   if (r == NULL) return no_memory();
   const int n = terms->mesh->n;

@@ -175,7 +175,7 @@ dvi_status dvi__schroedinger_largest_kinetic(const dvi_schroedinger *s, double *
                                                      .symmetric = 1,
                                                      .value = mass};
   const dvi__pencil pencil = {.K = &K, .M = &M, .dimension = s->dimension};
-  const dvi_status status = dvi__largest_eigenvalue(&pencil, kinetic);
+  const dvi_status status = dvi__largest_eigenvalue(&pencil, NULL, kinetic);
   dvi__release(mass);
   return status;
 }

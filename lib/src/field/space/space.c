@@ -1,4 +1,5 @@
 /* Function spaces: creation, sharing, and what they tell. */
+#include "field/mesh/share.h"
 #include "field/space/space.h"
 
 #include <limits.h>
@@ -71,6 +72,7 @@ static dvi_status make_lines(const dvi_space_options *options, dvi_space *space)
 static dvi_status make_space(const dvi_space_options *options, dvi_space *space)
 {
   if (options->mesh != NULL) {
+    DVI_TRY(dvi__refuse_share(options->mesh, "space: functions on a mesh"));
     space->mesh = dvi_mesh_share(options->mesh);
     space->dimension = dvi_mesh_dimension(options->mesh);
     space->domain = &dvi__simplices;

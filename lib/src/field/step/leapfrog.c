@@ -22,6 +22,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "field/algebra/conjugate.h"
+#include "field/mesh/share.h"
 #include "field/step/observables.h"
 #include "field/step/source.h"
 #include "field/step/sweep.h"
@@ -142,7 +143,7 @@ static void drift(leapfrog *l)
   }
 }
 
-static void kick(leapfrog *l)
+static dvi_status kick(leapfrog *l)
 {
   const dvi_field *f = l->field;
   dvi__sweep_E(&l->sweep, l->keep, l->gain, l->H, l->E);
@@ -155,6 +156,7 @@ static void kick(leapfrog *l)
       l->E[cell] -= l->gain[cell] * (J->weight[k] * l->J[c]);
     }
   }
+  return dvi__refresh(f->mesh, f->degree, l->E);
 }
 
 static dvi_status kick_by_solution(leapfrog *l)
@@ -174,11 +176,12 @@ static dvi_status step(leapfrog *l)
   if (l->gain == NULL) memcpy(l->solver.kept, l->state, (size_t)l->numbers * sizeof *l->state);
   drift(l);
   if (l->gain != NULL)
-    kick(l);
+    status = kick(l);
   else
     status = kick_by_solution(l);
   l->at.n += status == DVI_OK;
-  if (status != DVI_OK) memcpy(l->state, l->solver.kept, (size_t)l->numbers * sizeof *l->state);
+  if (status != DVI_OK && l->gain == NULL)
+    memcpy(l->state, l->solver.kept, (size_t)l->numbers * sizeof *l->state);
   return status;
 }
 
@@ -246,7 +249,7 @@ static dvi_status half_kick(leapfrog *l)
     if (l->keep != NULL) *E *= f->mass.value[i] * l->inverse[i];
     *E += half * (dvi__sweep_curl(&l->sweep, f->unknown[i], l->H) + push(l, i)) * l->inverse[i];
   }
-  return DVI_OK;
+  return dvi__refresh(f->mesh, f->degree, l->E);
 }
 
 /* Whether damping moves charge. */
@@ -344,25 +347,28 @@ static dvi_status energy(const void *self, double *value)
   const leapfrog *l = self;
   const dvi_field *f = l->field;
   double *next = l->spare, *product = l->spare + l->sweep.faces;
+  dvi__accumulator sum = {.terms = 0};
   dvi_matrix M;
   DVI_TRY(dvi_star_matrix(f->star, f->degree + 1, &M));
   for (int64_t b = 0; b < l->sweep.faces; b++) next[b] = B_after(l, l->at.dt, b);
   dvi_matrix_multiply(&M, 0, next, product);
-  *value = 0;
-  for (int64_t b = 0; b < l->sweep.faces; b++) *value += 0.5 * B_after(l, 0, b) * product[b];
+  for (int64_t b = 0; b < l->sweep.faces; b++)
+    if (dvi__owns(f->mesh, f->degree + 1, b))
+      dvi__accumulate(&sum, 0.5 * B_after(l, 0, b) * product[b]);
   for (int64_t i = 0; i < f->unknowns; i++) {
-    *value += 0.5 * dvi__field_row(f, &f->mass, i, l->E) * l->E[f->unknown[i]];
+    const int c = f->unknown[i];
+    if (!dvi__owns(f->mesh, f->degree, c)) continue;
+    dvi__accumulate(&sum, 0.5 * dvi__field_row(f, &f->mass, i, l->E) * l->E[c]);
     if (l->source != NULL)
-      *value -= l->source[i] * (l->A[f->unknown[i]] - l->at.dt / 2 * l->E[f->unknown[i]]);
+      dvi__accumulate(&sum, -l->source[i] * (l->A[c] - l->at.dt / 2 * l->E[c]));
   }
-  return DVI_OK;
+  return dvi__sum_of_all(f->mesh, &sum, value);
 }
 
 static dvi_status charge_error(const void *self, double *error)
 {
   const leapfrog *l = self;
-  *error = dvi__charge_error(&l->charge, l->E, integral_of_E(l));
-  return DVI_OK;
+  return dvi__charge_error(&l->charge, l->E, integral_of_E(l), error);
 }
 
 static int observables(const void *self)
@@ -552,7 +558,9 @@ static dvi_status make(leapfrog *l, int threads)
   DVI_TRY(make_state(l));
   DVI_TRY(dvi__wave_source(f, &l->source));
   l->at.hash = hash_of(l);
-  return f->mass_is_diagonal && l->sweep.is_diagonal ? make_coefficients(l) : make_solver(l);
+  if (f->mass_is_diagonal && l->sweep.is_diagonal) return make_coefficients(l);
+  DVI_TRY(dvi__refuse_share(f->mesh, "march: leapfrog with a Whitney star"));
+  return make_solver(l);
 }
 
 static const dvi__march_kind kind = {
@@ -584,7 +592,7 @@ dvi_status dvi__leapfrog_create(const dvi_field *field, const dvi__march_plan *p
   l->bound = bound;
   l->keeps_A = field->is_wave || plan->potential || moves_charge(field);
   l->changed = -1;
-  const dvi_status status = make(l, plan->threads);
+  const dvi_status status = dvi__agree(field->mesh, make(l, plan->threads));
   if (status == DVI_OK) return dvi__march_wrap(&kind, l, march);
   destroy(l);
   return status;

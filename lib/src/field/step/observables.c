@@ -4,6 +4,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "field/mesh/share.h"
 
 /* ---- charge ---- */
 
@@ -74,11 +75,13 @@ void dvi__charge_start(dvi__charge *charge, const double *E, const double *integ
   dvi_matrix_multiply(&charge->d, 1, charge->work, charge->start);
 }
 
-double dvi__charge_error(const dvi__charge *charge, const double *E, const double *integral)
+dvi_status dvi__charge_error(const dvi__charge *charge, const double *E, const double *integral,
+                             double *error)
 {
+  const dvi_field *f = charge->field;
   const dvi_matrix *d = &charge->d;
-  double *form = charge->work, *sum = form + d->rows + charge->field->unknowns,
-         *size = sum + d->columns, worst = 0, largest = 0;
+  double *form = charge->work, *sum = form + d->rows + f->unknowns, *size = sum + d->columns,
+         largest[2] = {0, 0}; /* error and size */
   displacement(charge, E, integral, form);
   for (int64_t v = 0; v < d->columns; v++) {
     sum[v] = -charge->start[v];
@@ -90,11 +93,13 @@ double dvi__charge_error(const dvi__charge *charge, const double *E, const doubl
       size[d->column[i]] += fabs(form[e]);
     }
   for (int64_t v = 0; v < d->columns; v++) {
-    if (!charge->is_free[v]) continue;
-    worst = fmax(worst, fabs(sum[v]));
-    largest = fmax(largest, size[v]);
+    if (!charge->is_free[v] || !dvi__owns(f->mesh, f->degree - 1, v)) continue;
+    largest[0] = fmax(largest[0], fabs(sum[v]));
+    largest[1] = fmax(largest[1], size[v]);
   }
-  return largest > 0 ? worst / largest : 0;
+  DVI_TRY(dvi__largest_of_all(f->mesh, 2, largest));
+  *error = largest[1] > 0 ? largest[0] / largest[1] : 0;
+  return DVI_OK;
 }
 
 /* ---- all ---- */

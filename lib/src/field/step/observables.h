@@ -27,7 +27,8 @@ void dvi__charge_clear(dvi__charge *charge);
 void dvi__charge_start(dvi__charge *charge, const double *E, const double *integral);
 
 /* Give the largest error of the charge of E, beside the largest sum of the sizes of its terms. */
-double dvi__charge_error(const dvi__charge *charge, const double *E, const double *integral);
+dvi_status dvi__charge_error(const dvi__charge *charge, const double *E, const double *integral,
+                             double *error);
 
 /* The observables: "energy", "gauss" of forms of degree 1 or more, and the probes. */
 int dvi__field_observables(const dvi_field *field);

@@ -6,17 +6,20 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "field/mesh/share.h"
 
-/* Add d^T M_{k+1} d of the fixed values to the load. Returns 0 if nothing but roundings is left. */
-static int add_pull(const dvi_field *field, const double *pull, double *source)
+/* Add d^T M_{k+1} d of the fixed values to the load. Returns how many of them are more
+ * than roundings. */
+static int64_t add_pull(const dvi_field *field, const double *pull, double *source)
 {
-  int is_needed = 0;
+  int64_t needed = 0;
   for (int64_t i = 0; i < field->unknowns; i++) {
     const double load = field->load[i], added = pull[field->unknown[i]];
     source[i] = load + added;
-    is_needed = is_needed || fabs(source[i]) > 1e-14 * (fabs(load) + fabs(added));
+    needed += fabs(source[i]) > 1e-14 * (fabs(load) + fabs(added)) &&
+              dvi__owns(field->mesh, field->degree, field->unknown[i]);
   }
-  return is_needed;
+  return needed;
 }
 
 dvi_status dvi__wave_source(const dvi_field *field, double **source)
@@ -29,18 +32,22 @@ dvi_status dvi__wave_source(const dvi_field *field, double **source)
   double *B = DVI_NEW(double, 2 * d.rows + d.columns);
   double *H = B != NULL ? B + d.rows : NULL, *pull = B != NULL ? H + d.rows : NULL;
   *source = DVI_NEW(double, field->unknowns);
-  int is_needed = 0;
+  int64_t needed = 0;
   if (B != NULL && *source != NULL) {
     dvi_matrix_multiply(&d, 0, field->fixed, B);
     dvi_matrix_multiply(&M2, 0, B, H);
     dvi_matrix_multiply(&d, 1, H, pull);
-    is_needed = add_pull(field, pull, *source);
+    needed = add_pull(field, pull, *source);
   }
-  const int has_memory = B != NULL && *source != NULL;
+  dvi_status status = B != NULL && *source != NULL
+                          ? DVI_OK
+                          : dvi__fail(DVI_NO_MEMORY, "march: no memory for a source");
   dvi__release(B);
-  if (!is_needed) {
+  status = dvi__agree(field->mesh, status);
+  if (status == DVI_OK) status = dvi__count_all(field->mesh, 1, &needed);
+  if (status != DVI_OK || needed == 0) {
     dvi__release(*source);
     *source = NULL;
   }
-  return has_memory ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "march: no memory for a source");
+  return status;
 }

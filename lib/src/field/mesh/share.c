@@ -1,0 +1,92 @@
+#include "field/mesh/share.h"
+
+#include "core/memory.h"
+#include "core/status.h"
+
+void dvi__share_destroy(dvi__share *share)
+{
+  if (share == NULL) return;
+  for (int k = 0; k < DVI__DEGREES; k++) {
+    dvi__release(share->number[k]);
+    dvi__release(share->owner[k]);
+  }
+  dvi__release(share);
+}
+
+int64_t dvi__whole_count(const dvi_mesh *mesh, int k)
+{
+  return mesh->share == NULL ? mesh->count[k] : mesh->share->total[k];
+}
+
+int64_t dvi__find_number(const dvi_mesh *mesh, int k, int64_t number)
+{
+  int64_t first = 0, last = mesh->count[k];
+  if (mesh->share == NULL) return number;
+  const int64_t *numbers = mesh->share->number[k];
+  while (first < last) {
+    const int64_t middle = first + (last - first) / 2;
+    if (numbers[middle] < number)
+      first = middle + 1;
+    else
+      last = middle;
+  }
+  return first < mesh->count[k] && numbers[first] == number ? first : -1;
+}
+
+/* ---- all processes ---- */
+
+static dvi_status check_call(const dvi__share *share, int failed)
+{
+  if (failed == 0) return DVI_OK;
+  return dvi__fail(DVI_CALLBACK_FAILED,
+                   "mesh: process %d of %d could not speak with the others: code %d",
+                   share->ranks.rank, share->ranks.count, failed);
+}
+
+dvi_status dvi__count_all(const dvi_mesh *mesh, int count, int64_t *number)
+{
+  const dvi__share *s = mesh->share;
+  return s == NULL ? DVI_OK : check_call(s, s->ranks.sum(count, number, s->ranks.user));
+}
+
+dvi_status dvi__largest_of_all(const dvi_mesh *mesh, int count, double *number)
+{
+  const dvi__share *s = mesh->share;
+  return s == NULL ? DVI_OK : check_call(s, s->ranks.largest(count, number, s->ranks.user));
+}
+
+dvi_status dvi__refresh(const dvi_mesh *mesh, int k, double *values)
+{
+  const dvi__share *s = mesh->share;
+  return s == NULL ? DVI_OK : check_call(s, s->ranks.refresh(k, values, s->ranks.user));
+}
+
+dvi_status dvi__agree(const dvi_mesh *mesh, dvi_status status)
+{
+  int64_t failed = status != DVI_OK;
+  if (mesh->share == NULL) return status;
+  const dvi_status reached = dvi__count_all(mesh, 1, &failed);
+  if (status != DVI_OK || reached != DVI_OK) return status != DVI_OK ? status : reached;
+  return failed == 0 ? DVI_OK
+                     : dvi__fail(DVI_CALLBACK_FAILED,
+                                 "mesh: %lld of %d processes failed, whose sentences tell why",
+                                 (long long)failed, mesh->share->ranks.count);
+}
+
+dvi_status dvi__sum_of_all(const dvi_mesh *mesh, dvi__accumulator *sum, double *value)
+{
+  if (mesh->share != NULL) {
+    dvi__accumulator_carry(sum);
+    DVI_TRY(dvi__count_all(mesh, DVI__SUM_NUMBERS, sum->number));
+  }
+  *value = dvi__accumulator_value(sum);
+  return DVI_OK;
+}
+
+dvi_status dvi__refuse_share(const dvi_mesh *mesh, const char *what)
+{
+  if (mesh->share == NULL) return DVI_OK;
+  return dvi__fail(DVI_UNSUPPORTED,
+                   "%s needs a whole mesh, and this is one of %d shares (dvi_mesh_cut)", what,
+                   mesh->share->ranks.count);
+}

@@ -1,0 +1,61 @@
+/* Meshes that are shares of larger ones, held by several processes. All k-cells of the n-cells that
+ * a process owns have all of their neighbours in its share, so that what is assembled for them is
+ * what the whole mesh has. Sums over all processes are exact until they are rounded once
+ * (num/accumulator.h), and do not depend on the division. */
+#ifndef DVI_FIELD_MESH_SHARE_H
+#define DVI_FIELD_MESH_SHARE_H
+#include "field/mesh/mesh.h"
+#include "num/accumulator.h"
+
+struct dvi__share {
+  dvi_ranks ranks;
+  int64_t *number[DVI__DEGREES];    /* [cells] in the whole mesh, ascending */
+  int *owner[DVI__DEGREES];         /* [cells] */
+  int64_t total[DVI__DEGREES];      /* cells of the whole mesh */
+  double least[DVI_MESH_SPACE_MAX]; /* coordinates of the whole mesh */
+};
+
+void dvi__share_destroy(dvi__share *share);
+
+/* Tell whether a k-cell belongs to this process. All cells of a whole mesh do. */
+static inline int dvi__owns(const dvi_mesh *mesh, int k, int64_t cell)
+{
+  return mesh->share == NULL || mesh->share->owner[k][cell] == mesh->share->ranks.rank;
+}
+
+/* Return the number of a k-cell in the whole mesh, and how many there are. */
+static inline int64_t dvi__whole_number(const dvi_mesh *mesh, int k, int64_t cell)
+{
+  return mesh->share == NULL ? cell : mesh->share->number[k][cell];
+}
+int64_t dvi__whole_count(const dvi_mesh *mesh, int k);
+
+/* Return the least coordinate of the whole mesh, which is `here` unless the mesh is a share. */
+static inline double dvi__least_coordinate(const dvi_mesh *mesh, int axis, double here)
+{
+  return mesh->share == NULL ? here : mesh->share->least[axis];
+}
+
+/* Return the k-cell of a number in the whole mesh, or -1 if it is not of this share. */
+int64_t dvi__find_number(const dvi_mesh *mesh, int k, int64_t number);
+
+/* The following functions are called on all processes. DVI_CALLBACK_FAILED on all of them if one
+ * cannot speak with the others. They do nothing else on a whole mesh. */
+
+/* Agree whether all have succeeded so far. If not, those that have fail, too. */
+dvi_status dvi__agree(const dvi_mesh *mesh, dvi_status status);
+
+/* Set the values [k-cells] of cells that others own to theirs. */
+dvi_status dvi__refresh(const dvi_mesh *mesh, int k, double *values);
+
+/* Give the sum of all processes' sums, rounded once. */
+dvi_status dvi__sum_of_all(const dvi_mesh *mesh, dvi__accumulator *sum, double *value);
+
+/* Replace numbers by their sums, or by the largest ones, over all processes. */
+dvi_status dvi__count_all(const dvi_mesh *mesh, int count, int64_t *number);
+dvi_status dvi__largest_of_all(const dvi_mesh *mesh, int count, double *number);
+
+/* Refuse a share for what needs a whole mesh, such as "march: avi". */
+dvi_status dvi__refuse_share(const dvi_mesh *mesh, const char *what);
+
+#endif

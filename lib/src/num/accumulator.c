@@ -1,0 +1,68 @@
+#include "num/accumulator.h"
+
+#include <math.h>
+
+static const int64_t digit_size = INT64_C(1) << 32;
+
+void dvi__accumulator_carry(dvi__accumulator *sum)
+{
+  for (int k = 0; k < DVI__DIGITS - 1; k++) {
+    const int64_t digit = sum->number[k] & (digit_size - 1);
+    sum->number[k + 1] += (sum->number[k] - digit) / digit_size;
+    sum->number[k] = digit;
+  }
+  sum->terms = 0;
+}
+
+/* Change the sign of a carried sum. */
+static void negate(dvi__accumulator *sum)
+{
+  for (int k = 0; k < DVI__DIGITS; k++) sum->number[k] = -sum->number[k];
+  dvi__accumulator_carry(sum);
+}
+
+/* Give the 64 bits from the leading one of digit `top` on, of which the last one is set if any bit
+ * behind them is, and the power of two of the last one. */
+static uint64_t leading_bits(const dvi__accumulator *sum, int top, int *power)
+{
+  const uint64_t first = (uint64_t)sum->number[top],
+                 second = top > 0 ? (uint64_t)sum->number[top - 1] : 0,
+                 third = top > 1 ? (uint64_t)sum->number[top - 2] : 0;
+  int spare = 0, rest = 0; /* leading zeros of the first digit */
+  while (first << spare >> 31 == 0) spare++;
+  const uint64_t behind = third << spare;
+  for (int k = top - 3; k >= 0; k--) rest |= sum->number[k] != 0;
+  rest |= (behind & 0xffffffff) != 0;
+  *power = 32 * (top - 1) - 1074 - spare;
+  return (first << 32 | second) << spare | behind >> 32 | (uint64_t)rest;
+}
+
+static int is_finite(const dvi__accumulator *sum)
+{
+  return sum->number[DVI__INFINITE] == 0 && sum->number[DVI__MINUS_INFINITE] == 0 &&
+         sum->number[DVI__NOT_A_NUMBER] == 0;
+}
+
+/* Give the sum of the terms that are not finite, if there are any. */
+static double value_of_others(const dvi__accumulator *sum)
+{
+  if (sum->number[DVI__NOT_A_NUMBER] > 0) return (double)NAN;
+  if (sum->number[DVI__INFINITE] > 0 && sum->number[DVI__MINUS_INFINITE] > 0) return (double)NAN;
+  return sum->number[DVI__INFINITE] > 0 ? (double)INFINITY : -(double)INFINITY;
+}
+
+double dvi__accumulator_value(const dvi__accumulator *sum)
+{
+  dvi__accumulator size = *sum;
+  int top = DVI__DIGITS - 1, power;
+  if (!is_finite(sum)) return value_of_others(sum);
+  dvi__accumulator_carry(&size);
+  const int is_negative = size.number[top] < 0;
+  if (is_negative) negate(&size);
+  while (top > 0 && size.number[top] == 0) top--;
+  if (size.number[top] == 0) return 0;
+  const uint64_t bits = leading_bits(&size, top, &power);
+  /* 53 of the 64 bits stay, unless the sum is so small that it is exact */
+  const double value = ldexp((double)bits, power);
+  return is_negative ? -value : value;
+}

@@ -1,0 +1,108 @@
+#define _POSIX_C_SOURCE 200809L
+#include "support/field/ranks.h"
+
+#include <check.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { RANKS = 16, NUMBERS = 256 };
+
+/* What all threads see. */
+typedef struct board {
+  const dvi_mesh *whole;
+  const int *owner;
+  int count;
+  pthread_barrier_t barrier;
+  double *values[DVI_MESH_DIMENSION_MAX + 1]; /* of the whole mesh */
+  int64_t integer[RANKS][NUMBERS];
+  double number[RANKS][NUMBERS];
+  void (*work)(const dvi_mesh *share, int rank, void *user);
+  void *user;
+} board;
+
+typedef struct rank {
+  board *board;
+  int rank;
+  dvi_mesh *share;
+  dvi_status status;
+} rank;
+
+static void meet(const rank *r)
+{
+  (void)pthread_barrier_wait(&r->board->barrier);
+}
+
+static int refresh(int degree, double *values, void *user)
+{
+  const rank *r = user;
+  const int64_t *number = dvi_mesh_share_numbers(r->share, degree);
+  const int *owner = dvi_mesh_share_owners(r->share, degree);
+  double *all = r->board->values[degree];
+  meet(r);
+  for (int64_t i = 0; i < dvi_mesh_count(r->share, degree); i++)
+    if (owner[i] == r->rank) all[number[i]] = values[i];
+  meet(r);
+  for (int64_t i = 0; i < dvi_mesh_count(r->share, degree); i++) values[i] = all[number[i]];
+  return 0;
+}
+
+static int sum(int count, int64_t *number, void *user)
+{
+  const rank *r = user;
+  meet(r);
+  memcpy(r->board->integer[r->rank], number, (size_t)count * sizeof *number);
+  meet(r);
+  memset(number, 0, (size_t)count * sizeof *number);
+  for (int other = 0; other < r->board->count; other++)
+    for (int i = 0; i < count; i++) number[i] += r->board->integer[other][i];
+  return 0;
+}
+
+static int largest(int count, double *number, void *user)
+{
+  const rank *r = user;
+  meet(r);
+  memcpy(r->board->number[r->rank], number, (size_t)count * sizeof *number);
+  meet(r);
+  for (int other = 0; other < r->board->count; other++)
+    for (int i = 0; i < count; i++)
+      if (r->board->number[other][i] > number[i]) number[i] = r->board->number[other][i];
+  return 0;
+}
+
+static void *run(void *user)
+{
+  rank *r = user;
+  const dvi_ranks ranks = {.size = sizeof ranks,
+                           .rank = r->rank,
+                           .count = r->board->count,
+                           .refresh = refresh,
+                           .sum = sum,
+                           .largest = largest,
+                           .user = r};
+  r->status = dvi_mesh_cut(r->board->whole, r->board->owner, &ranks, &r->share);
+  if (r->status == DVI_OK) r->board->work(r->share, r->rank, r->board->user);
+  dvi_mesh_destroy(&r->share);
+  return NULL;
+}
+
+void run_ranks(const dvi_mesh *whole, int count, const int *owner,
+               void (*work)(const dvi_mesh *share, int rank, void *user), void *user)
+{
+  static board shared;
+  rank ranks[RANKS];
+  pthread_t thread[RANKS];
+  shared = (board){.whole = whole, .owner = owner, .count = count, .work = work, .user = user};
+  ck_assert(pthread_barrier_init(&shared.barrier, NULL, (unsigned)count) == 0);
+  for (int k = 0; k <= dvi_mesh_dimension(whole); k++)
+    shared.values[k] = calloc((size_t)dvi_mesh_count(whole, k), sizeof(double));
+  for (int r = 0; r < count; r++) {
+    ranks[r] = (rank){.board = &shared, .rank = r};
+    ck_assert(pthread_create(thread + r, NULL, run, ranks + r) == 0);
+  }
+  for (int r = 0; r < count; r++) ck_assert(pthread_join(thread[r], NULL) == 0);
+  for (int r = 0; r < count; r++) ck_assert_int_eq(ranks[r].status, DVI_OK);
+  for (int k = 0; k <= dvi_mesh_dimension(whole); k++) free(shared.values[k]);
+  (void)pthread_barrier_destroy(&shared.barrier);
+}

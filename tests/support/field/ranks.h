@@ -1,0 +1,11 @@
+/* Processes that share a mesh, as threads of one. */
+#ifndef TESTS_SUPPORT_FIELD_RANKS_H
+#define TESTS_SUPPORT_FIELD_RANKS_H
+#include <dvi/mesh.h>
+
+/* Cut the mesh into shares, and let each thread work with its own. The threads speak with each
+ * other as processes do. `owner` is [n-cells]. */
+void run_ranks(const dvi_mesh *whole, int count, const int *owner,
+               void (*work)(const dvi_mesh *share, int rank, void *user), void *user);
+
+#endif
