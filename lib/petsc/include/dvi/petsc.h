@@ -1,0 +1,62 @@
+/** Meshes that are divided among the processes of MPI, by PETSc.
+ *
+ *  This header is not part of <dvi/dvi.h>, and the only one that includes MPI's. Link dvi::petsc
+ *  (dvi-petsc). A binary that is linked to Debian's PETSc may be passed on under the GPL only,
+ *  because that PETSc is linked to FFTW.
+ *
+ *  MPI and PETSc are started by the program (PetscInitialize). All processes of the communicator
+ *  make the same calls. */
+#ifndef DVI_PETSC_H
+#define DVI_PETSC_H
+#include <dvi/mesh.h>
+#include <mpi.h>
+
+/** What joins the share of a process to the others. */
+typedef struct dvi_division dvi_division;
+
+/** How a mesh is divided. Zero means the default. */
+typedef struct dvi_division_options {
+  size_t size; /**< sizeof(dvi_division_options) */
+  /** The processes. Default (where it is MPI_COMM_NULL or 0): all of them */
+  MPI_Comm comm;
+  /** "ptscotch" and others of PETSc's, for few neighbours; "blocks" for cells in the order of their
+   *  numbers. Default: ptscotch if PETSc has it */
+  const char *partitioner;
+} dvi_division_options;
+
+/** Facts about the share of a process. */
+typedef struct dvi_division_facts {
+  int rank, ranks;                                /**< this process, and how many there are */
+  const char *partitioner;                        /**< its name */
+  int64_t owned[DVI_MESH_DIMENSION_MAX + 1];      /**< k-cells that belong to this process */
+  int64_t ghosts[DVI_MESH_DIMENSION_MAX + 1];     /**< those that belong to others */
+  int64_t bytes_in[DVI_MESH_DIMENSION_MAX + 1];   /**< that a refresh of a k-form receives */
+  int neighbours;                                 /**< processes that own ghosts */
+} dvi_division_facts;
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** Divide a mesh, and cut this process's share out of it (dvi_mesh_cut).
+ *
+ *  @param mesh  the whole mesh, the same on all processes. It is not needed afterwards
+ *  @param options  NULL for the defaults
+ *  @param[out] share  for dvi_mesh_destroy
+ *  @param[out] division  for dvi_division_destroy after the share
+ *  @retval DVI_BAD_OPTION    PETSc has no such partitioner
+ *  @retval DVI_BAD_ARGUMENT  there are more processes than cells
+ *  @retval DVI_SOLVER_FAILED PETSc or MPI failed */
+dvi_status dvi_mesh_divide(const dvi_mesh *mesh, const dvi_division_options *options,
+                           dvi_mesh **share, dvi_division **division);
+
+/** Give facts about the share of this process. */
+void dvi_division_facts_of(const dvi_division *division, dvi_division_facts *facts);
+
+/** Release the division, and set the pointer to NULL. NULL is allowed. */
+void dvi_division_destroy(dvi_division **division);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
