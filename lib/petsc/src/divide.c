@@ -191,8 +191,7 @@ static PetscErrorCode plant_all(dvi_division *division, const dvi_mesh *share, c
 {
   const int n = dvi_mesh_dimension(share);
   PetscMPIInt neighbours = 0;
-  for (int k = 0; k <= n; k++)
-    PetscCall(plant(division, share, dvi_mesh_count(mesh, k), k));
+  for (int k = 0; k <= n; k++) PetscCall(plant(division, share, dvi_mesh_count(mesh, k), k));
   PetscCall(PetscSFGetRootRanks(division->forest[n], &neighbours, NULL, NULL, NULL, NULL));
   division->facts.neighbours = (int)neighbours;
   return 0;

@@ -37,6 +37,69 @@ static uint64_t leading_bits(const dvi__accumulator *sum, int top, int *power)
   return (first << 32 | second) << spare | behind >> 32 | (uint64_t)rest;
 }
 
+/* ---- many terms ---- */
+
+/* Numbers that are added, or compared, side by side. */
+enum { LANES = 8 };
+
+/* Give the largest size of terms. Those that are no numbers do not count. */
+static double largest_size(int count, const double *term)
+{
+  double most[LANES] = {0};
+  for (int i = 0; i < count; i += LANES)
+    for (int l = 0; l < LANES; l++)
+      most[l] = fabs(term[i + l]) > most[l] ? fabs(term[i + l]) : most[l];
+  for (int l = 1; l < LANES; l++) most[0] = fmax(most[0], most[l]);
+  return most[0];
+}
+
+/* Take the leading bits of all terms, up to a common place, and give their sum, which is exact
+ * (Rump, Ogita and Oishi 2008, sec. 3). Terms are below 2^exponent, and keep what is left. */
+static double take_leading_bits(int count, int exponent, double *term)
+{
+  const double shift = ldexp(1.5, exponent + 10); /* 2^8 terms of 42 bits have 50 */
+  double sum[LANES] = {0};
+  for (int i = 0; i < count; i += LANES)
+    for (int l = 0; l < LANES; l++) {
+      const double leading = (term[i + l] + shift) - shift;
+      term[i + l] -= leading;
+      sum[l] += leading;
+    }
+  for (int l = 1; l < LANES; l++) sum[0] += sum[l];
+  return sum[0];
+}
+
+void dvi__accumulate_terms(dvi__accumulator *sum, double *term)
+{
+  const int count = DVI__SUM_TERMS;
+  for (int level = 0; level < 3; level++) {
+    int exponent;
+    const double most = largest_size(count, term);
+    if (most == 0) return;
+    if (!(most > 0x1p-900 && most < 0x1p900)) break;
+    (void)frexp(most, &exponent);
+    dvi__accumulate(sum, take_leading_bits(count, exponent, term));
+  }
+  for (int i = 0; i < count; i++)
+    if (term[i] != 0) dvi__accumulate(sum, term[i]);
+}
+
+void dvi__accumulate_products(dvi__accumulator *sum, int64_t n, const double *x, const double *y,
+                              const char *taken)
+{
+  double term[DVI__SUM_TERMS];
+  for (int64_t first = 0; first < n; first += DVI__SUM_TERMS) {
+    const int count = (int)(n - first < DVI__SUM_TERMS ? n - first : DVI__SUM_TERMS);
+    for (int i = count; i < DVI__SUM_TERMS; i++) term[i] = 0;
+    for (int i = 0; i < count; i++) term[i] = x[first + i] * y[first + i];
+    for (int i = 0; i < count && taken != NULL; i++)
+      if (!taken[first + i]) term[i] = 0;
+    dvi__accumulate_terms(sum, term);
+  }
+}
+
+/* ---- the value ---- */
+
 static int is_finite(const dvi__accumulator *sum)
 {
   return sum->number[DVI__INFINITE] == 0 && sum->number[DVI__MINUS_INFINITE] == 0 &&

@@ -26,12 +26,12 @@ typedef struct dvi_division_options {
 
 /** Facts about the share of a process. */
 typedef struct dvi_division_facts {
-  int rank, ranks;                                /**< this process, and how many there are */
-  const char *partitioner;                        /**< its name */
-  int64_t owned[DVI_MESH_DIMENSION_MAX + 1];      /**< k-cells that belong to this process */
-  int64_t ghosts[DVI_MESH_DIMENSION_MAX + 1];     /**< those that belong to others */
-  int64_t bytes_in[DVI_MESH_DIMENSION_MAX + 1];   /**< that a refresh of a k-form receives */
-  int neighbours;                                 /**< processes that own ghosts */
+  int rank, ranks;                              /**< this process, and how many there are */
+  const char *partitioner;                      /**< its name */
+  int64_t owned[DVI_MESH_DIMENSION_MAX + 1];    /**< k-cells that belong to this process */
+  int64_t ghosts[DVI_MESH_DIMENSION_MAX + 1];   /**< those that belong to others */
+  int64_t bytes_in[DVI_MESH_DIMENSION_MAX + 1]; /**< that a refresh of a k-form receives */
+  int neighbours;                               /**< processes that own ghosts */
 } dvi_division_facts;
 
 #ifdef __cplusplus

@@ -36,8 +36,7 @@ static int is_own(const lanczos *s, int64_t row)
 static dvi_status dot(const lanczos *s, const double *x, const double *y, double *value)
 {
   dvi__accumulator sum = {.terms = 0};
-  for (int64_t i = 0; i < s->n; i++)
-    if (is_own(s, i)) dvi__accumulate(&sum, x[i] * y[i]);
+  dvi__accumulate_products(&sum, s->n, x, y, s->rows != NULL ? s->rows->is_own : NULL);
   if (s->rows != NULL) return s->rows->sum(s->rows->of, &sum, value);
   *value = dvi__accumulator_value(&sum);
   return DVI_OK;
