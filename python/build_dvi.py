@@ -73,16 +73,19 @@ static dvi_status interruptible_sweep(const dvi_study_sweep_options *options, in
 
 
 def flags(option):
-    """Return what pkg-config says, without the option's two letters."""
-    said = subprocess.run(["pkg-config", option, "dvi-scene", "dvi-study"], capture_output=True,
-                          text=True)
-    return [word[2:] for word in said.stdout.split()]
+    """Return the folders that pkg-config names."""
+    try:
+        said = subprocess.run(["pkg-config", option, "dvi-scene", "dvi-study"],
+                              capture_output=True, text=True)
+    except FileNotFoundError:
+        return []
+    return [os.path.realpath(word[2:]) for word in said.stdout.split()]
 
 
 def folders(variable, option):
     """Return the folder that the environment names, or those of the installed library."""
     named = os.environ.get(variable)
-    return [named] if named else flags(option)
+    return [os.path.abspath(named)] if named else flags(option)
 
 
 def declarations(include):
@@ -94,7 +97,11 @@ def declarations(include):
         command += ["-I" + path for path in include]
         command += [f"-DDVI_{name}_H" for name in INLINE] + ["-"]
         text = "#include <dvi/dvi.h>\n#include <dvi/scene.h>\n#include <dvi/study.h>\n"
-        said = subprocess.run(command, input=text, capture_output=True, text=True, check=True)
+        said = subprocess.run(command, input=text, capture_output=True, text=True)
+    if said.returncode:
+        raise SystemExit(said.stderr + "libdvi is not found: install it, with pkg-config, "
+                         "name the folder of its dvi-study.pc in PKG_CONFIG_PATH, or its folders "
+                         "in DVI_INCLUDE and DVI_LIBRARY (docs/python.md).")
     # cffi cannot compile pointers to constant arrays, and leaves such members out.
     return re.sub(r"const \w+ \(\*\w+\)\[\d\];", "...;", said.stdout)
 
