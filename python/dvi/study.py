@@ -86,9 +86,11 @@ def _evaluations(counters):
     return counters.values + counters.gradients + counters.hessians
 
 
-def order(system, method, h, t_end, levels=5, reference=None, ratio=2.0, **start):
+def order(system, method, h, t_end, levels=5, reference=None, ratio=None, **start):
     """Measure the order of a method by steps h, h/ratio and so on.
 
+    h          None for a search for steps that show the order, which needs a reference
+    ratio      default: 2, or that of the search
     reference  q at t_end, or "ida" for an independent integrator. Default: runs of neighbouring
                steps are compared
     start      q with v or p, and t. A scene has a start of its own
@@ -96,8 +98,8 @@ def order(system, method, h, t_end, levels=5, reference=None, ratio=2.0, **start
     """
     runs, held = _runs(system, t_end, reference, **start)
     options = ffi.new("dvi_study_order_options *",
-                      {"size": ffi.sizeof("dvi_study_order_options"), "h": abs(h),
-                       "ratio": ratio, "levels": levels})
+                      {"size": ffi.sizeof("dvi_study_order_options"), "h": abs(h or 0.0),
+                       "ratio": ratio or 0.0, "levels": levels})
     found = ffi.new("dvi_study_level[]", max(levels, lib.DVI_STUDY_LEVELS_MAX))
     result = ffi.new("dvi_study_order_result *")
     status = lib.dvi_study_order(system.pointer, method.encode(), runs, options, found, result)
