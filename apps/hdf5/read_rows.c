@@ -50,7 +50,7 @@ static bool open_set(hdf5_source *source, hdf5_content *content)
 
 static bool read_names(hdf5_source *source, hdf5_content *content)
 {
-  source->column = calloc((size_t)source->columns, sizeof *source->column);
+  source->column = calloc((size_t)source->columns + 1, sizeof *source->column);
   if (source->column == NULL) return h5_refuse("out of memory");
   content->column = (const char *const *)source->column;
   return head_read_columns(source->set, source->columns, source->column);
