@@ -55,6 +55,7 @@ static int read_columns(spectrum_study *s)
     if (series_want(&s->table, name) < 0) return FAILED;
   }
   if (s->request->columns != NULL && series_want(&s->table, "t") < 0) return FAILED;
+  s->table.of_run = true;
   int code = series_read("spectrum", s->path, &s->table);
   if (code != DONE) return code;
   s->time = -1;
@@ -296,10 +297,10 @@ static const option command_options[] = {
 
 static const command_line command = {
     .name = "spectrum",
-    .synopsis = "FILE.csv [OPTIONS]",
+    .synopsis = "FILE.csv|FILE.h5 [OPTIONS]",
     .operand = "FILE.csv",
-    .summary = "Find the frequencies, decay rates and amplitudes in columns of a CSV file that dvi "
-               "has written; - is standard input.\n",
+    .summary = "Find the frequencies, decay rates and amplitudes in columns of a file that dvi "
+               "run has written; - is standard input.\n",
     .options = command_options,
     .details = details,
 };
