@@ -227,6 +227,37 @@ START_TEST(without_a_step_the_levels_are_searched_for)
 }
 END_TEST
 
+/* Set when the solution is asked for. */
+static volatile int cancelling;
+
+static int exact_and_cancel(double t, double *q, void *user)
+{
+  cancelling = 1;
+  return exact(t, q, user);
+}
+
+START_TEST(a_cancelled_study_keeps_no_fit)
+{
+  const dvi_study_order_options search = {.size = sizeof search, .once = 1};
+  dvi_study_runs runs = runs_to(1.0);
+  runs.cancel = &cancelling;
+  runs.exact = exact;
+  ck_assert_int_eq(study("verlet", &runs), DVI_OK);
+  ck_assert(!result.cancelled && result.levels == LEVELS);
+  runs.exact = exact_and_cancel;
+  ck_assert_int_eq(study("verlet", &runs), DVI_OK);
+  ck_assert(result.cancelled && result.levels == 0 && result.first == -1 && !result.holds);
+  ck_assert_int_eq(dvi_study_order(model->system, "verlet", &runs, &search, level, &result),
+                   DVI_OK);
+  ck_assert(result.cancelled && result.levels == 0);
+  dvi_study_job job[2] = {{.method = "verlet", .h = 0.1}, {.method = "midpoint", .h = 0.1}};
+  ck_assert_int_eq(dvi_study_work(model->system, &runs, 2, job, 3), DVI_OK);
+  for (int i = 0; i < 2; i++)
+    ck_assert(job[i].cancelled && job[i].error == 0.0 && job[i].seconds.upper == 0.0);
+  cancelling = 0;
+}
+END_TEST
+
 /* A rule whose error is that of an order, but with more than 100 parts. */
 static dvi_status failing_rule(double parts, double *error, void *user)
 {
@@ -322,6 +353,7 @@ SUITE(study_order)
   tcase_add_test(tests, bad_runs_are_refused);
   tcase_add_test(tests, a_solution_that_fails_or_is_not_finite_is_refused);
   tcase_add_test(tests, without_a_step_the_levels_are_searched_for);
+  tcase_add_test(tests, a_cancelled_study_keeps_no_fit);
   tcase_add_test(tests, levels_of_anything_are_searched_for);
   tcase_add_test(tests, bad_options_are_refused);
   tcase_add_test(tests, lack_of_memory_anywhere_is_a_status);

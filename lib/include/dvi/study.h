@@ -38,6 +38,9 @@ typedef struct dvi_study_runs {
   int (*exact)(double t, double *q, void *user);
   void *user;
   int reference; /**< not 0 to compare with IDA (dvi_reference_judge at its defaults) */
+  /** The study ends when this becomes not 0, within a step as in dvi_run_options, but for the run
+   *  of IDA. May be NULL */
+  const volatile int *cancel;
 } dvi_study_runs;
 
 /** Options of an order study. Zero means default. */
@@ -78,6 +81,8 @@ typedef struct dvi_study_order_result {
   /** Errors up to the floor, ten times the judge's error or a rounding of q, and from the ceiling
    *  on, 1 % of the largest coordinate, are not fitted */
   double floor, ceiling;
+  /** not 0 if `cancel` ended the study. The levels before are there, without a fit */
+  int cancelled;
 } dvi_study_order_result;
 
 /** Repeated measurements in a few numbers. Half of them lie between the quartiles. */
@@ -94,7 +99,8 @@ typedef struct dvi_study_job {
   double h;           /**< step without sign, given by the caller */
   /** DVI_OK, or the status above 0 with which the run failed. All numbers below are then 0 */
   dvi_status status;
-  double error;             /**< largest difference of a coordinate at t_end */
+  int cancelled; /**< not 0 if `cancel` ended the study. The other numbers of all jobs are then 0 */
+  double error;  /**< largest difference of a coordinate at t_end */
   dvi_counters counters;    /**< work of a run */
   dvi_study_spread seconds; /**< process time of a run, over the rounds */
 } dvi_study_job;

@@ -75,7 +75,7 @@ static dvi_status search_run(double parts, double *error, void *user)
   DVI_TRY(dvi__trial_open(s->system, s->method, s->runs, parts, &trial));
   *error = dvi__distance(s->nq, dvi_integrator_q(trial.integrator), s->solution);
   dvi__trial_close(&trial);
-  return DVI_OK;
+  return dvi__runs_cancelled(s->runs) ? DVI_BAD_STATE : DVI_OK; /* ends the search */
 }
 
 static dvi_status search_steps(order_study *s, double ratio)
@@ -145,6 +145,7 @@ static dvi_status run_levels(order_study *s)
   const int before = dvi__has_judge(s->runs) ? 0 : 1; /* a level waits for the next one */
   for (int k = 0; k < s->levels + before; k++) {
     DVI_TRY(run_level(s, k));
+    if (dvi__runs_cancelled(s->runs)) break;
     if (k >= before) judge_level(s, k - before);
   }
   return DVI_OK;
@@ -177,9 +178,12 @@ static dvi_status order_run(order_study *s, const dvi_study_order_options *optio
 {
   if (dvi__has_judge(s->runs))
     DVI_TRY(dvi__judge(s->system, s->runs, s->solution, &s->result->judge_error));
-  if (options->h == 0.0) DVI_TRY(search_steps(s, options->ratio));
+  const dvi_status searched = options->h == 0.0 ? search_steps(s, options->ratio) : DVI_OK;
+  s->result->cancelled = dvi__runs_cancelled(s->runs);
+  if (s->result->cancelled || searched != DVI_OK) return s->result->cancelled ? DVI_OK : searched;
   DVI_TRY(run_levels(s));
-  fit_levels(s);
+  s->result->cancelled = s->result->levels < s->levels;
+  if (!s->result->cancelled) fit_levels(s);
   return DVI_OK;
 }
 
