@@ -20,6 +20,8 @@ CDEF = """
 dvi_status interruptible_record(dvi_integrator *, const dvi_run_options *,
                                 const dvi_record_options *, dvi_recording **, int *interrupted);
 dvi_status interruptible_sweep(const dvi_study_sweep_options *, int *interrupted);
+dvi_status interruptible_march(dvi_march *, const dvi_march_record_options *, dvi_recording **,
+                               int *interrupted);
 """
 
 SOURCE = r"""
@@ -66,6 +68,18 @@ static dvi_status interruptible_sweep(const dvi_study_sweep_options *options, in
   dvi_study_sweep_options own = *options;
   own.cancel = &cancelled;
   const dvi_status status = dvi_study_sweep(&own, NULL);
+  *interrupted = release_interrupts(before);
+  return status;
+}
+
+/* Do the same for a march. */
+static dvi_status interruptible_march(dvi_march *march, const dvi_march_record_options *options,
+                                      dvi_recording **recording, int *interrupted)
+{
+  const handler before = catch_interrupts();
+  dvi_march_record_options own = *options;
+  own.cancel = &cancelled;
+  const dvi_status status = dvi_march_record(march, &own, recording);
   *interrupted = release_interrupts(before);
   return status;
 }

@@ -5,9 +5,10 @@ import numpy as np
 
 from dvi._dvi import ffi, lib
 from dvi._library import Owned, array, numbers, text
-from dvi.errors import Unsupported, check
+from dvi.errors import Unsupported, check, error
 
 FORMS = {"A": lib.DVI_FORM_A, "E": lib.DVI_FORM_E, "B": lib.DVI_FORM_B}
+PARTS = {"A": lib.DVI_RECORD_A, "E": lib.DVI_RECORD_E, "B": lib.DVI_RECORD_B}
 OPERATORS = {"mass": lib.DVI_FIELD_MASS, "stiffness": lib.DVI_FIELD_STIFFNESS}
 
 
@@ -161,6 +162,64 @@ class March:
             found[text(name)] = value[0]
             i += 1
         return found
+
+    def record(self, t_end: float, every: float = 0.0, times=None, forms=()) -> dict:
+        """Advance to t_end, and return arrays by name: "t", forms and observables.
+
+        every  time between two rows. times  the times of the rows in place of that
+        forms  some of A, E and B [rows, cells], or a dict of a form's chosen cells (None for all)
+        """
+        options = ffi.new("dvi_march_record_options *", {
+            "size": ffi.sizeof("dvi_march_record_options"), "t_end": t_end, "every": every,
+            "parts": lib.DVI_RECORD_OBSERVABLES})
+        if times is not None:
+            times = np.ascontiguousarray(times, dtype=float)
+            options.times, options.time_count = numbers(times), len(times)
+        kept = []
+        for form, cells in (forms if isinstance(forms, dict) else dict.fromkeys(forms)).items():
+            options.parts |= PARTS[form]
+            if cells is not None:
+                kept.append(ffi.new("int[]", [int(cell) for cell in cells]))
+                options.cell[FORMS[form]] = kept[-1]
+                options.cell_count[FORMS[form]] = len(cells)
+        made, interrupted = ffi.new("dvi_recording **"), ffi.new("int *")
+        status = lib.interruptible_march(self.pointer, options, made, interrupted)
+        failure = error(status) if status != lib.DVI_OK else None
+        rows = self._rows(made[0]) if made[0] != ffi.NULL else None
+        if interrupted[0]:
+            raise KeyboardInterrupt
+        if failure is not None:
+            failure.run = rows  # what was recorded before the failure
+            raise failure
+        return rows
+
+    def _rows(self, recording):
+        """Return the arrays of a recording, without copies."""
+        owner, count = Owned("recording", recording), lib.dvi_recording_rows(recording)
+        found, width, i = {}, ffi.new("int *"), 0
+        for name, part in [("t", lib.DVI_RECORD_T), *PARTS.items(),
+                           (None, lib.DVI_RECORD_OBSERVABLES)]:
+            pointer = lib.dvi_recording_part(recording, part, width)
+            if pointer != ffi.NULL:
+                found[name] = array(ffi.cast("double *", pointer), (count, width[0]), owner)
+        found["t"], observed = found["t"][:, 0], found.pop(None)
+        while (name := lib.dvi_march_observable(self.pointer, i)) != ffi.NULL:
+            found[text(name)] = observed[:, i]
+            i += 1
+        return found
+
+    def save(self) -> bytes:
+        """Return the state as bytes. A restored march goes on with the same bits."""
+        size = ffi.new("size_t *")
+        check(lib.dvi_march_save_memory(self.pointer, ffi.NULL, 0, size))
+        room = ffi.new("char[]", size[0])
+        check(lib.dvi_march_save_memory(self.pointer, room, size[0], size))
+        return bytes(ffi.buffer(room, size[0]))
+
+    def restore(self, state: bytes) -> March:
+        """Go on from a state that `save` returned."""
+        check(lib.dvi_march_load_memory(self.pointer, state, len(state)))
+        return self
 
     def __repr__(self):
         return f"<March at t = {self.t:g}>"
