@@ -28,20 +28,26 @@ SOURCE = r"""
 #include <signal.h>
 
 static volatile int cancelled;
+static int depth; /* of runs that callbacks of runs begin, all on the main thread */
 
 static void cancel(int number) { (void)number; cancelled = 1; }
 
-/* Record a run that Ctrl-C ends after its step. */
+/* Record a run, which Ctrl-C ends after its step if *interrupted is not 0. Then it tells whether it
+ * did. That is for the main thread. */
 static dvi_status interruptible_record(dvi_integrator *integrator, const dvi_run_options *run,
                                        const dvi_record_options *options,
                                        dvi_recording **recording, int *interrupted)
 {
+  if (!*interrupted) return dvi_record(integrator, run, options, recording);
   dvi_run_options own = *run;
-  void (*before)(int) = signal(SIGINT, cancel);
-  cancelled = 0;
+  struct sigaction before, during = {.sa_handler = cancel};
+  (void)sigemptyset(&during.sa_mask);
+  if (depth++ == 0) cancelled = 0;
   own.cancel = &cancelled;
+  const int is_set = sigaction(SIGINT, &during, &before) == 0;
   const dvi_status status = dvi_record(integrator, &own, options, recording);
-  if (before != SIG_ERR) (void)signal(SIGINT, before);
+  if (is_set) (void)sigaction(SIGINT, &before, NULL);
+  depth--;
   *interrupted = cancelled;
   return status;
 }
