@@ -12,6 +12,7 @@ from dvi._library import Array, encoded, numbers, vector
 
 AT_POINT = "int(*)(double, double *, double *, void *)"
 AT_STATE = "int(*)(double, double *, double *, double *, void *)"
+PAGE = 4096  # no function lies on the first page
 
 
 class Callbacks:
@@ -34,7 +35,7 @@ class Callbacks:
         """Return the pointer of a callback: an address as it is, a function of Python wrapped."""
         address = getattr(given, "address", given)
         if isinstance(address, int) and not isinstance(address, bool):
-            if address <= 0:
+            if not PAGE <= address < 2**64:
                 raise ValueError(f"{address} is no address of a function")
             return ffi.cast(kind, address)
         if isinstance(address, ffi.CData):
