@@ -1,9 +1,10 @@
 # Make completions for bash or zsh of what the commands print for --help.
 # Usage: for c in $commands; do dvi $c --help; done | awk -v shell=bash -f completions.awk
 
-# Tells what completes a value: files, methods, or nothing.
+# Tells what completes a value: files, methods, problems, or nothing.
 function kind_of(value) {
-  if (value ~ /FILE|^-\|/) return "files"
+  if (value ~ /FILE|\.html$|^-\|/) return "files"
+  if (value == "SCENE") return "problems"
   return value == "SPEC" ? "methods" : "nothing"
 }
 
@@ -36,7 +37,7 @@ rows && /^  --/ {
 }
 
 function operands_of(command) {
-  if (operand[command] ~ /PROBLEM/) return "problems"
+  if (operand[command] ~ /PROBLEM/) return operand[command] ~ /FILE/ ? "runs" : "problems"
   if (operand[command] ~ /methods/) return "lists"
   return "files"
 }
@@ -78,6 +79,8 @@ function bash_script(   list, i, k, c, words, valued) {
   print "  methods) COMPREPLY=($(compgen -W \"$(_dvi_names methods)\" -- \"$word\")) ;;"
   print "  problems) COMPREPLY=($(compgen -f -X '!*.y*ml' -- \"$word\")" \
     " $(compgen -W \"$(_dvi_names problems)\" -- \"$word\")) ;;"
+  print "  runs) COMPREPLY=($(compgen -f -- \"$word\")" \
+    " $(compgen -W \"$(_dvi_names problems)\" -- \"$word\")) ;;"
   print "  lists) COMPREPLY=($(compgen -W 'methods problems' -- \"$word\")) ;;"
   print "  esac\n}"
   print "complete -o filenames -F _dvi dvi"
@@ -94,6 +97,7 @@ function quoted(text) {
 function zsh_action(kind) {
   if (kind == "files") return "_files"
   if (kind == "methods" || kind == "problems") return "{_dvi_names " kind "}"
+  if (kind == "runs") return "{_dvi_names problems; _files}"
   return kind == "lists" ? "(methods problems)" : " "
 }
 

@@ -19,6 +19,7 @@ STANDARD = ["math", "stdarg", "stddef", "stdint", "string"]
 CDEF = """
 dvi_status interruptible_record(dvi_integrator *, const dvi_run_options *,
                                 const dvi_record_options *, dvi_recording **, int *interrupted);
+dvi_status interruptible_sweep(const dvi_study_sweep_options *, int *interrupted);
 """
 
 SOURCE = r"""
@@ -32,6 +33,21 @@ static int depth; /* of runs that callbacks of runs begin, all on the main threa
 
 static void cancel(int number) { (void)number; cancelled = 1; }
 
+static int catch_interrupts(struct sigaction *before)
+{
+  struct sigaction during = {.sa_handler = cancel};
+  (void)sigemptyset(&during.sa_mask);
+  if (depth++ == 0) cancelled = 0;
+  return sigaction(SIGINT, &during, before) == 0;
+}
+
+static int release_interrupts(int is_caught, const struct sigaction *before)
+{
+  if (is_caught) (void)sigaction(SIGINT, before, NULL);
+  depth--;
+  return cancelled;
+}
+
 /* Record a run, which Ctrl-C ends after its step if *interrupted is not 0. Then it tells whether it
  * did. That is for the main thread. */
 static dvi_status interruptible_record(dvi_integrator *integrator, const dvi_run_options *run,
@@ -39,32 +55,44 @@ static dvi_status interruptible_record(dvi_integrator *integrator, const dvi_run
                                        dvi_recording **recording, int *interrupted)
 {
   if (!*interrupted) return dvi_record(integrator, run, options, recording);
+  struct sigaction before;
+  const int is_caught = catch_interrupts(&before);
   dvi_run_options own = *run;
-  struct sigaction before, during = {.sa_handler = cancel};
-  (void)sigemptyset(&during.sa_mask);
-  if (depth++ == 0) cancelled = 0;
   own.cancel = &cancelled;
-  const int is_set = sigaction(SIGINT, &during, &before) == 0;
   const dvi_status status = dvi_record(integrator, &own, options, recording);
-  if (is_set) (void)sigaction(SIGINT, &before, NULL);
-  depth--;
-  *interrupted = cancelled;
+  *interrupted = release_interrupts(is_caught, &before);
+  return status;
+}
+
+/* Do the same for a sweep. */
+static dvi_status interruptible_sweep(const dvi_study_sweep_options *options, int *interrupted)
+{
+  if (!*interrupted) return dvi_study_sweep(options, NULL);
+  struct sigaction before;
+  const int is_caught = catch_interrupts(&before);
+  dvi_study_sweep_options own = *options;
+  own.cancel = &cancelled;
+  const dvi_status status = dvi_study_sweep(&own, NULL);
+  *interrupted = release_interrupts(is_caught, &before);
   return status;
 }
 """
 
 
 def flags(option):
-    """Return what pkg-config says, without the option's two letters."""
-    said = subprocess.run(["pkg-config", option, "dvi-scene", "dvi-study"], capture_output=True,
-                          text=True)
-    return [word[2:] for word in said.stdout.split()]
+    """Return the folders that pkg-config names."""
+    try:
+        said = subprocess.run(["pkg-config", option, "dvi-scene", "dvi-study"],
+                              capture_output=True, text=True)
+    except FileNotFoundError:
+        return []
+    return [os.path.realpath(word[2:]) for word in said.stdout.split()]
 
 
 def folders(variable, option):
     """Return the folder that the environment names, or those of the installed library."""
     named = os.environ.get(variable)
-    return [named] if named else flags(option)
+    return [os.path.abspath(named)] if named else flags(option)
 
 
 def declarations(include):
@@ -76,7 +104,11 @@ def declarations(include):
         command += ["-I" + path for path in include]
         command += [f"-DDVI_{name}_H" for name in INLINE] + ["-"]
         text = "#include <dvi/dvi.h>\n#include <dvi/scene.h>\n#include <dvi/study.h>\n"
-        said = subprocess.run(command, input=text, capture_output=True, text=True, check=True)
+        said = subprocess.run(command, input=text, capture_output=True, text=True)
+    if said.returncode:
+        raise SystemExit(said.stderr + "libdvi is not found: install it, with pkg-config, "
+                         "name the folder of its dvi-study.pc in PKG_CONFIG_PATH, or its folders "
+                         "in DVI_INCLUDE and DVI_LIBRARY (docs/python.md).")
     # cffi cannot compile pointers to constant arrays, and leaves such members out.
     return re.sub(r"const \w+ \(\*\w+\)\[\d\];", "...;", said.stdout)
 

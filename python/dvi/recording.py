@@ -231,7 +231,7 @@ def _events(given: Mapping[str, Any], of: Callbacks) -> list[tuple[str, dict[str
     return made
 
 
-def _interrupts() -> bool:
+def interrupts() -> bool:
     """Tell if Ctrl-C is to end a run: on the main thread, unless the program handles it itself."""
     return (threading.current_thread() is threading.main_thread() and
             signal.getsignal(signal.SIGINT) is signal.default_int_handler)
@@ -270,7 +270,7 @@ def record(integrator: Integrator, h: float, t_end: float, every: int | None = N
     run = ffi.new("dvi_run_options *", {"h": h, "t_end": t_end, "every": every or 0})
     if found:
         run.events, run.event_count = listed, len(found)
-    made, interrupted = ffi.new("dvi_recording **"), ffi.new("int *", _interrupts())
+    made, interrupted = ffi.new("dvi_recording **"), ffi.new("int *", interrupts())
     with integrator._owned:
         status = lib.interruptible_record(integrator.pointer, run, options, made, interrupted)
     failure: BaseException | None = error(status) if status != lib.DVI_OK else None

@@ -1,4 +1,4 @@
-"""Studies of methods: their order, and their time against their error."""
+"""Studies: the order of methods, and their time against their error."""
 from __future__ import annotations
 
 import html
@@ -90,7 +90,8 @@ def _runs(system: System, t_end: float, reference: ArrayLike | None, q: ArrayLik
     return runs, held
 
 
-def _check(system: System, status: int) -> None:
+def check_on(system: System, status: int) -> None:
+    """Raise what a callback of the system raised, or the exception of a status."""
     system.raise_failure()
     check(status)
 
@@ -116,7 +117,7 @@ def order(system: System, method: str, h: float, t_end: float, levels: int = 5,
     result = ffi.new("dvi_study_order_result *")
     specification = encoded(method, "the method")
     status = lib.dvi_study_order(system.pointer, specification, runs, options, found, result)
-    _check(system, status)
+    check_on(system, status)
     del held
     rows = [(row.h, row.steps, row.error, row.slope or math.nan, row.energy_error, row.seconds,
              _evaluations(row.counters)) for row in found[0:result.levels]]
@@ -143,7 +144,7 @@ def work(system: System, methods: Iterable[str], steps: Iterable[float], t_end: 
     steps = [abs(h) for h in steps]
     listed = [(method, h) for method in names for h in steps]
     jobs = ffi.new("dvi_study_job[]", [{"method": names[method], "h": h} for method, h in listed])
-    _check(system, lib.dvi_study_work(system.pointer, runs, len(listed), jobs, rounds))
+    check_on(system, lib.dvi_study_work(system.pointer, runs, len(listed), jobs, rounds))
     del held
     made: dict[str, list[tuple[Any, ...]]] = {method: [] for method in names}
     for (method, _), job in zip(listed, jobs):

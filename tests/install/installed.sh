@@ -73,12 +73,20 @@ fi
 say "scenes, manual pages and completions"
 quietly "$dvi" check "$prefix/share/dvi/scenes/kepler.yaml" ||
   fail "an installed scene does not run"
-for page in dvi dvi-run; do
+commands=$("$dvi" --help |
+  awk '/^Commands:/ { rows = 1; next } !NF { rows = 0 } rows { print $1 }')
+for page in dvi $(echo "$commands" | sed 's/^/dvi-/'); do
   [ -s "$prefix/share/man/man1/$page.1" ] || [ -s "$prefix/share/man/man1/$page.1.gz" ] ||
     fail "no manual page $page(1)"
 done
 quietly bash -c ". '$prefix/share/bash-completion/completions/dvi'" ||
   fail "bash does not read its completions"
+zsh=$(find "$prefix/share/zsh" -name _dvi)
+for command in $commands; do
+  grep -q "^ *'$command:" "$zsh" || fail "zsh does not complete dvi $command"
+  grep -q "^  $command)" "$prefix/share/bash-completion/completions/dvi" ||
+    fail "bash does not complete dvi $command"
+done
 
 # Distributions may leave the pages out of an installed system.
 pages=$prefix/share/doc/dvi

@@ -13,8 +13,14 @@ version=$(sed -n 's/^#define DVI_VERSION_[A-Z]* \([0-9]*\)$/\1/p' lib/include/dv
 has() { grep -q -x -F -e "$2" "$1" || fail "$1: no line '$2'"; }
 has CITATION.cff "version: $version"
 has CITATION.cff 'license: BSD-3-Clause'
-has packaging/spack/package.py "    version(\"$version\")"
-has packaging/conda/meta.yaml "{% set version = \"$version\" %}"
+for recipe in packaging/spack/*/package.py; do
+  has "$recipe" "    version(\"$version\")"
+done
+for recipe in packaging/conda/*/meta.yaml; do
+  has "$recipe" "{% set version = \"$version\" %}"
+done
+has packaging/spack/py_dvi/package.py \
+  "    depends_on(\"libdvi@$version\", type=(\"build\", \"link\", \"run\"))"
 head -n 1 debian/changelog | grep -q -F "libdvi ($version-" ||
   fail "debian/changelog: the first entry is not of $version"
 abi=${version%.*}

@@ -44,6 +44,10 @@ completes 'kepler' 'a problem' ./dvi run kep
 completes 'scene.yaml' 'a scene' ./dvi run sce
 completes 'verlet' 'a method' ./dvi run kepler --method verl
 completes 'other.txt' 'a file' ./dvi run kepler --out oth
+completes 'other.txt' 'rows of a run' ./dvi view oth
+completes 'kepler' 'a problem to view' ./dvi view kep
+completes 'other.txt' 'a page' ./dvi view kepler --out oth
+completes 'scene.yaml' 'the scene of rows' ./dvi view rows.csv --scene sce
 completes 'methods' 'a list' ./dvi list met
 
 for line in '.SH SYNOPSIS' 'dvi plot FILE.csv --axes' '.SH EXAMPLES'; do
