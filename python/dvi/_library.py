@@ -68,8 +68,8 @@ class Owned:
         if self.forked:
             return RuntimeError(f"the {self.kind} has threads or a step of the process before the "
                                 "fork; make another one here")
-        return RuntimeError(f"the {self.kind} is at work, in another thread or in the callback that "
-                            "it calls; make one for each thread")
+        return RuntimeError(f"the {self.kind} is at work, in another thread or in the callback "
+                            "that it calls; make one for each thread")
 
     def __enter__(self) -> None:
         if not self.lock.acquire(False):

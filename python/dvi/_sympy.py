@@ -42,9 +42,9 @@ def scene(lagrangian: Any, coordinates: Sequence[Any], time: Any,
             return "t" if symbol == time else symbol.name
     text = Printer().doprint(sympy.sympify(lagrangian))
     symbols = {symbol.name for symbol in sympy.sympify(lagrangian).free_symbols - {time}}
-    missing = symbols - set(parameters)
+    missing = sorted(symbols - set(parameters))
     if missing:
-        raise TypeError(f"the Lagrangian has symbols without a number: {', '.join(sorted(missing))}")
+        raise TypeError(f"the Lagrangian has symbols without a number: {', '.join(missing)}")
     unknown = set(parameters) - symbols
     if unknown:
         raise TypeError(f"the Lagrangian has no symbol {', '.join(sorted(unknown))}")

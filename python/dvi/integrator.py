@@ -1,6 +1,7 @@
 """Single steps."""
 from __future__ import annotations
 
+import operator
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
@@ -66,6 +67,7 @@ class Integrator:
 
     def steps(self, h: float, count: int | None = None) -> Iterator[Integrator]:
         """Take steps without end, or `count`, and yield the integrator after each."""
+        count = None if count is None else operator.index(count)
         if count is not None and count < 0:
             raise ValueError(f"{count} steps asked; 0 or more are possible")
         return self._steps(h, count)

@@ -78,7 +78,8 @@ def path(system: System, method: str, steps: int, span: float,
     for name, array in held.items():
         setattr(options, name, numbers(array))
     made, report = ffi.new("dvi_path **"), ffi.new("dvi_path_report *")
-    check_on(system, lib.dvi_path_create(system.pointer, encoded(method, "the method"), options, made))
+    specification = encoded(method, "the method")
+    check_on(system, lib.dvi_path_create(system.pointer, specification, options, made))
     owned = Owned("path", made[0], system.owned)
     if guess is not None:
         t = vector(guess[0], np.size(guess[0]), "the times of the guess")

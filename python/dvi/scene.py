@@ -170,8 +170,9 @@ class Scene(System):
         integrator = Integrator(self, method).start(q, v=v, p=p, t=t)
         if every is None and times is None:
             every = plan.every
-        return record(integrator, plan.h if h is None else h, plan.t_end if t_end is None else t_end,
-                      every, times, parts, events, list(self._events()))
+        return record(integrator, plan.h if h is None else h,
+                      plan.t_end if t_end is None else t_end, every, times, parts, events,
+                      list(self._events()))
 
     def __reduce__(self) -> Any:
         name, source, parameters = self._made_of

@@ -169,8 +169,8 @@ def sweep(make: Scene | Callable[..., Integrator], grid: Mapping[str, ArrayLike]
     part      (k, n) takes points k, k + n, .. of the grid alone, to share it among machines
     extremes  adds the least and the most of each coordinate, least_x and most_x
     Returns a `Sweep`, a table: the values, status (DVI_OK, "event NAME", or why the run failed),
-    steps, t, coordinates, momenta and invariants at the end, and the largest energy_error. Failed runs have
-    NaN where there is no number.
+    steps, t, coordinates, momenta and invariants at the end, and the largest energy_error. Failed
+    runs have NaN where there is no number.
     """
     if isinstance(make, Scene):
         h = make._plan.h if h is None else h
