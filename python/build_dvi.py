@@ -31,44 +31,51 @@ SOURCE = r"""
 #include <signal.h>
 
 static volatile int cancelled;
+static int depth; /* of runs that callbacks of runs begin, all on the main thread */
 
 static void cancel(int number) { (void)number; cancelled = 1; }
 
-typedef void (*handler)(int);
-
-static handler catch_interrupts(void)
+static int catch_interrupts(struct sigaction *before)
 {
-  cancelled = 0;
-  return signal(SIGINT, cancel);
+  struct sigaction during = {.sa_handler = cancel};
+  (void)sigemptyset(&during.sa_mask);
+  if (depth++ == 0) cancelled = 0;
+  return sigaction(SIGINT, &during, before) == 0;
 }
 
-static int release_interrupts(handler before)
+static int release_interrupts(int is_caught, const struct sigaction *before)
 {
-  if (before != SIG_ERR) (void)signal(SIGINT, before);
+  if (is_caught) (void)sigaction(SIGINT, before, NULL);
+  depth--;
   return cancelled;
 }
 
-/* Record a run that Ctrl-C ends after its step. */
+/* Record a run, which Ctrl-C ends after its step if *interrupted is not 0. Then it tells whether it
+ * did. That is for the main thread. */
 static dvi_status interruptible_record(dvi_integrator *integrator, const dvi_run_options *run,
                                        const dvi_record_options *options,
                                        dvi_recording **recording, int *interrupted)
 {
-  const handler before = catch_interrupts();
+  if (!*interrupted) return dvi_record(integrator, run, options, recording);
+  struct sigaction before;
+  const int is_caught = catch_interrupts(&before);
   dvi_run_options own = *run;
   own.cancel = &cancelled;
   const dvi_status status = dvi_record(integrator, &own, options, recording);
-  *interrupted = release_interrupts(before);
+  *interrupted = release_interrupts(is_caught, &before);
   return status;
 }
 
 /* Do the same for a sweep. */
 static dvi_status interruptible_sweep(const dvi_study_sweep_options *options, int *interrupted)
 {
-  const handler before = catch_interrupts();
+  if (!*interrupted) return dvi_study_sweep(options, NULL);
+  struct sigaction before;
+  const int is_caught = catch_interrupts(&before);
   dvi_study_sweep_options own = *options;
   own.cancel = &cancelled;
   const dvi_status status = dvi_study_sweep(&own, NULL);
-  *interrupted = release_interrupts(before);
+  *interrupted = release_interrupts(is_caught, &before);
   return status;
 }
 
@@ -76,11 +83,13 @@ static dvi_status interruptible_sweep(const dvi_study_sweep_options *options, in
 static dvi_status interruptible_march(dvi_march *march, const dvi_march_record_options *options,
                                       dvi_recording **recording, int *interrupted)
 {
-  const handler before = catch_interrupts();
+  if (!*interrupted) return dvi_march_record(march, options, recording);
+  struct sigaction before;
+  const int is_caught = catch_interrupts(&before);
   dvi_march_record_options own = *options;
   own.cancel = &cancelled;
   const dvi_status status = dvi_march_record(march, &own, recording);
-  *interrupted = release_interrupts(before);
+  *interrupted = release_interrupts(is_caught, &before);
   return status;
 }
 """
