@@ -20,6 +20,7 @@ STANDARD = ["math", "stdarg", "stddef", "stdint", "string"]
 CDEF = """
 dvi_status interruptible_record(dvi_integrator *, const dvi_run_options *,
                                 const dvi_record_options *, dvi_recording **, int *interrupted);
+dvi_status interruptible_sweep(const dvi_study_sweep_options *, int *interrupted);
 """
 
 SOURCE = r"""
@@ -32,18 +33,41 @@ static volatile int cancelled;
 
 static void cancel(int number) { (void)number; cancelled = 1; }
 
+typedef void (*handler)(int);
+
+static handler catch_interrupts(void)
+{
+  cancelled = 0;
+  return signal(SIGINT, cancel);
+}
+
+static int release_interrupts(handler before)
+{
+  if (before != SIG_ERR) (void)signal(SIGINT, before);
+  return cancelled;
+}
+
 /* Record a run that Ctrl-C ends after its step. */
 static dvi_status interruptible_record(dvi_integrator *integrator, const dvi_run_options *run,
                                        const dvi_record_options *options,
                                        dvi_recording **recording, int *interrupted)
 {
+  const handler before = catch_interrupts();
   dvi_run_options own = *run;
-  void (*before)(int) = signal(SIGINT, cancel);
-  cancelled = 0;
   own.cancel = &cancelled;
   const dvi_status status = dvi_record(integrator, &own, options, recording);
-  if (before != SIG_ERR) (void)signal(SIGINT, before);
-  *interrupted = cancelled;
+  *interrupted = release_interrupts(before);
+  return status;
+}
+
+/* Do the same for a sweep. */
+static dvi_status interruptible_sweep(const dvi_study_sweep_options *options, int *interrupted)
+{
+  const handler before = catch_interrupts();
+  dvi_study_sweep_options own = *options;
+  own.cancel = &cancelled;
+  const dvi_status status = dvi_study_sweep(&own, NULL);
+  *interrupted = release_interrupts(before);
   return status;
 }
 """

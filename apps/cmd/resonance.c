@@ -1,12 +1,12 @@
 /* dvi resonance, which searches for the values of a parameter at which a method lets an invariant
  * grow. */
+#include <dvi/study.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "cli/command.h"
-#include "cli/parallel.h"
 #include "csv/events.h"
 #include "cli/file.h"
 #include "load/open.h"
@@ -248,7 +248,7 @@ static int complete_search(resonance_request *request)
   const double range = search->to - search->from;
   search->grid = request->grid > 0 ? request->grid : GRID_DEFAULT;
   search->most = request->points > 0 ? request->points : POINTS_DEFAULT;
-  search->threads = request->threads > 0 ? request->threads : parallel_cores();
+  search->threads = request->threads > 0 ? request->threads : dvi_study_cores();
   if (!isfinite(range * (double)search->grid))
     return usage_error("resonance: --sweep %s: the range is too wide", request->varied);
   search->width = isnan(request->width) ? width_default * range : request->width;
@@ -259,8 +259,8 @@ static int complete_search(resonance_request *request)
   if (search->grid > search->most)
     return usage_error("resonance: --grid %ld is more than the %ld of --points", search->grid,
                        search->most);
-  if (search->threads > THREADS_MAX)
-    return usage_error("resonance: at most %d threads", (int)THREADS_MAX);
+  if (search->threads > DVI_STUDY_THREADS_MAX)
+    return usage_error("resonance: at most %d threads", (int)DVI_STUDY_THREADS_MAX);
   if (!(search->width >= 1e-13 * fmax(fabs(search->from), fabs(search->to))))
     return usage_error("resonance: --width %g is below what numbers near %g can tell apart",
                        search->width, search->to);

@@ -1,13 +1,12 @@
 /* dvi sweep, which runs a problem once at each point of a grid of parameters. */
 #define _POSIX_C_SOURCE 200809L
+#include <dvi/study.h>
 #include <math.h>
-#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "cli/command.h"
-#include "cli/parallel.h"
 #include "cli/file.h"
 #include "load/open.h"
 #include "cli/options.h"
@@ -19,14 +18,12 @@
 #include "sweep/sweep_point.h"
 #include "cli/way.h"
 
-/* The state of a sweep. The lock guards the members below it. */
+/* The state of a sweep. */
 typedef struct sweep {
   const sweep_task *task;
   const char *command; /* the command line */
   long points, there;  /* number of all points, and of those that an earlier sweep left */
-  pthread_mutex_t lock;
-  sweep_row *row; /* [points] a row without a text is still to be run */
-  long next;      /* point where the search for such a row goes on */
+  sweep_row *row;      /* [points] a row without a text is still to be run */
   long done;
   sweep_part part;
   progress_line progress;
@@ -46,43 +43,56 @@ static const char ended[] =
 
 /* ---- points ---- */
 
-/* Return the next point without a row, or -1 if there is none, or none is to be begun. */
-static long sweep_take_point(sweep *s)
+static dvi_status open_point(const dvi_study_point *at, dvi_study_run *run, void *user)
 {
-  (void)pthread_mutex_lock(&s->lock);
-  while (s->next < s->points && s->row[s->next].text != NULL) s->next++;
-  const long k = s->next < s->points && !s->lost ? s->next++ : -1;
-  (void)pthread_mutex_unlock(&s->lock);
-  return k;
+  return sweep_open(((const sweep *)user)->task, at, run);
 }
 
-static void sweep_give_row(sweep *s, long k, const sweep_row *row)
+static void close_point(dvi_study_run *run, void *user)
 {
-  (void)pthread_mutex_lock(&s->lock);
-  s->row[k] = *row;
-  if (row->text == NULL) complain("out of memory");
-  if (row->text == NULL || !sweep_part_add(&s->part, k, row)) s->lost = true;
-  s->done++;
-  progress_show(&s->progress, (double)s->done / (double)(s->points - s->there), "dvi sweep");
-  (void)pthread_mutex_unlock(&s->lock);
+  (void)user;
+  sweep_close(run);
 }
 
-static void *sweep_work(void *user)
+/* Keep a row. */
+static int take_row(const dvi_study_point *at, const dvi_study_run *run, const dvi_study_row *found,
+                    void *user)
 {
   sweep *s = user;
-  for (long k = sweep_take_point(s); k >= 0; k = sweep_take_point(s)) {
-    const sweep_row row = sweep_run(s->task, k);
-    sweep_give_row(s, k, &row);
-  }
-  return NULL;
+  const long k = (long)at->number;
+  const sweep_row *row = &s->row[k];
+  s->row[k] = sweep_make_row(s->task, run, found);
+  if (row->text == NULL) complain("out of memory");
+  s->lost = row->text == NULL || !sweep_part_add(&s->part, k, row);
+  s->done++;
+  progress_show(&s->progress, (double)s->done / (double)(s->points - s->there), "dvi sweep");
+  return s->lost ? -1 : 0;
 }
 
-static void sweep_run_points(sweep *s, long threads)
+static int sweep_run_points(sweep *s, int threads)
 {
   const long left = s->points - s->there;
+  char *skip = calloc((size_t)s->points, 1);
+  if (skip == NULL) {
+    complain("out of memory");
+    return FAILED;
+  }
+  for (long k = 0; k < s->points; k++) skip[k] = s->row[k].text != NULL;
+  const dvi_study_sweep_options options = {.size = sizeof options,
+                                           .axes = s->task->grid.axes,
+                                           .axis = s->task->grid.study,
+                                           .skip = skip,
+                                           .threads = threads < left ? threads : (int)left,
+                                           .open = open_point,
+                                           .found = take_row,
+                                           .close = close_point,
+                                           .user = s};
   progress_start(&s->progress, true);
-  parallel_work(threads < left ? threads : left, sweep_work, s);
+  const dvi_status status = dvi_study_sweep(&options, NULL);
   progress_end(&s->progress);
+  free(skip);
+  if (status == DVI_OK || s->lost) return status == DVI_OK ? DONE : FAILED;
+  return library_error(status);
 }
 
 /* ---- rows ---- */
@@ -156,20 +166,18 @@ static int sweep_all(const sweep_task *task, const sweep_request *request)
   const char *path = request->out;
   int code = FAILED;
   s.row = calloc((size_t)s.points, sizeof *s.row);
-  (void)pthread_mutex_init(&s.lock, NULL);
   if (s.row == NULL)
     complain("out of memory");
   else if (sweep_part_open(&s.part, path, sweep_key(task), s.points, s.row)) {
     s.there = count_rows(&s, false);
     if (s.there > 0)
       complain("sweep: %ld of %ld points are in '%s' already", s.there, s.points, s.part.path);
-    sweep_run_points(&s, request->threads > 0 ? request->threads : parallel_cores());
-    code = sweep_finish(&s, path);
+    code = sweep_run_points(&s, request->threads > 0 ? (int)request->threads : dvi_study_cores());
+    if (code == DONE) code = sweep_finish(&s, path);
   }
   sweep_part_close(&s.part, s.written);
   for (long k = 0; s.row != NULL && k < s.points; k++) free(s.row[k].text);
   free(s.row);
-  (void)pthread_mutex_destroy(&s.lock);
   return code;
 }
 
@@ -198,8 +206,8 @@ static int sweep_check_request(const sweep_request *request)
   if (strcmp(request->out, "-") == 0)
     return usage_error("sweep: --out -: rows go to a file, not to standard output, for an "
                        "interrupted sweep goes on from there");
-  if (request->threads > THREADS_MAX)
-    return usage_error("sweep: at most %d threads", (int)THREADS_MAX);
+  if (request->threads > DVI_STUDY_THREADS_MAX)
+    return usage_error("sweep: at most %d threads", (int)DVI_STUDY_THREADS_MAX);
   if (!file_writable(request->out)) return FAILED;
   return !store_is_wanted(request->out) || store_module(request->out) != NULL ? DONE : FAILED;
 }

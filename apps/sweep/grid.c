@@ -44,9 +44,7 @@ static int axis_read_range(const char *setting, const char *text, grid_axis *axi
   if (!isfinite((to - from) * count))
     return usage_error("sweep: --set %s: the range is too wide", setting);
   if (!axis_allocate(axis, (long)count)) return FAILED;
-  for (long k = 0; k < axis->count; k++)
-    axis->value[k] = from + (to - from) * (double)k / (double)(axis->count - 1);
-  axis->value[axis->count - 1] = to;
+  (void)dvi_study_range(from, to, axis->count, axis->value);
   return DONE;
 }
 
@@ -127,14 +125,10 @@ void grid_fixed(const grid *of, grid_point *point)
     if (of->axis[i].count == 1) point_set_axis(&of->axis[i], 0, point);
 }
 
-void grid_at(const grid *of, long k, grid_point *point)
+void grid_at(const grid *of, const int64_t *index, grid_point *point)
 {
-  long block = of->points; /* number of points with the same values of the axes so far */
   point->settings.count = 0;
-  for (int i = 0; i < of->axes; i++) {
-    block /= of->axis[i].count;
-    point_set_axis(&of->axis[i], k / block % of->axis[i].count, point);
-  }
+  for (int i = 0; i < of->axes; i++) point_set_axis(&of->axis[i], (long)index[i], point);
 }
 
 /* ---- with the problem ---- */
@@ -194,12 +188,12 @@ int grid_complete(const problem *scene, grid *all)
   if (all->axes == 0)
     return usage_error(
         "sweep: nothing to sweep over; give --set NAME=V1,V2,.. or NAME=FROM:TO:COUNT");
-  all->points = 1;
-  for (int i = 0; i < all->axes; i++) {
-    if (all->axis[i].count > POINTS_MAX / all->points)
-      return usage_error("sweep: more than %d points", (int)POINTS_MAX);
-    all->points *= all->axis[i].count;
-  }
+  for (int i = 0; i < all->axes; i++)
+    all->study[i] = (dvi_study_axis){.count = all->axis[i].count, .value = all->axis[i].value};
+  const int64_t points = dvi_study_points(all->axes, all->study);
+  if (points < 0 || points > POINTS_MAX)
+    return usage_error("sweep: more than %d points", (int)POINTS_MAX);
+  all->points = (long)points;
   return DONE;
 }
 

@@ -1,6 +1,8 @@
 /** The points of a sweep, which are all combinations of values of parameters. */
 #ifndef GRID_H
 #define GRID_H
+#include <dvi/study.h>
+
 #include "cli/options.h"
 #include "problem.h"
 
@@ -19,7 +21,8 @@ typedef struct grid_axis {
 typedef struct grid {
   int axes;
   grid_axis axis[WORDS_MAX];
-  long points; /**< set by grid_complete */
+  dvi_study_axis study[WORDS_MAX]; /**< the same axes for the library, set by grid_complete */
+  long points;                     /**< set by grid_complete */
 } grid;
 
 /** A point's settings, "name=value", in the order of the axes. */
@@ -40,8 +43,8 @@ void grid_fixed(const grid *of, grid_point *point);
  * count. Returns DONE, or complains and returns the exit code. */
 int grid_complete(const problem *scene, grid *all);
 
-/** Return the settings of point k, from 0. */
-void grid_at(const grid *of, long k, grid_point *point);
+/** Return the settings of the point with these indices [axes]. */
+void grid_at(const grid *of, const int64_t *index, grid_point *point);
 
 void grid_clear(grid *old);
 #endif

@@ -1,13 +1,13 @@
 #define _POSIX_C_SOURCE 200809L
 #include "sweep/peaks.h"
 
+#include <dvi/study.h>
 #include <math.h>
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 #include "cli/command.h"
-#include "cli/parallel.h"
 #include "sweep/peak_refinement.h"
 #include "cli/progress.h"
 
@@ -44,12 +44,11 @@ static int peaks_take_point(round_of_runs *r)
   return k;
 }
 
-static void *peaks_work(void *user)
+static void peaks_work(void *user)
 {
   round_of_runs *r = user;
   for (int k = peaks_take_point(r); k >= 0; k = peaks_take_point(r))
     resonance_run(r->task, &r->found->point[k]);
-  return NULL;
 }
 
 static int compare_value(const void *left, const void *right)
@@ -62,7 +61,7 @@ static int compare_value(const void *left, const void *right)
 static void run_new_points(round_of_runs *r, long threads)
 {
   const long left = r->found->count - r->next;
-  parallel_work(threads < left ? threads : left, peaks_work, r);
+  dvi_study_parallel((int)(threads < left ? threads : left), peaks_work, r);
   qsort(r->found->point, (size_t)r->found->count, sizeof *r->found->point, compare_value);
 }
 
@@ -73,12 +72,11 @@ static void add_point(peaks_found *found, double value)
   found->point[found->count++] = (resonance_point){.value = value};
 }
 
-static void add_grid(const peaks_search *search, peaks_found *found)
+/* Add the points of the grid, for which x [grid] is memory. */
+static void add_grid(const peaks_search *search, peaks_found *found, double *x)
 {
-  for (long k = 0; k < search->grid; k++)
-    add_point(found,
-              search->from + (search->to - search->from) * (double)k / (double)(search->grid - 1));
-  found->point[found->count - 1].value = search->to;
+  (void)dvi_study_range(search->from, search->to, search->grid, x);
+  for (long k = 0; k < search->grid; k++) add_point(found, x[k]);
 }
 
 /* Add the middles of the marked gaps. Returns false if there is room for only some of them. */
@@ -99,7 +97,7 @@ static bool add_middles(const peaks_search *search, peaks_found *found, double *
 static void peaks_run_rounds(round_of_runs *r, const peaks_search *search, double *x, bool *halve)
 {
   progress_start(&r->progress, true);
-  add_grid(search, r->found);
+  add_grid(search, r->found, x);
   while (r->next < r->found->count) {
     run_new_points(r, search->threads);
     r->found->complete = add_middles(search, r->found, x, halve);

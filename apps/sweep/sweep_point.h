@@ -28,7 +28,14 @@ typedef struct sweep_row {
 /** Write the names of the columns, with commas between them. */
 void sweep_header(const sweep_task *task, FILE *stream);
 
-/** Run point k. The row and a complaint report a failure. May be called from several threads at
- * once. */
-sweep_row sweep_run(const sweep_task *task, long k);
+/** Make the run of a point, for the library's sweep. Complains if its problem cannot be made. May
+ * be called from several threads at once. */
+dvi_status sweep_open(const sweep_task *task, const dvi_study_point *at, dvi_study_run *run);
+
+/** Make the row of a run. Complains of a run that failed. */
+sweep_row sweep_make_row(const sweep_task *task, const dvi_study_run *run,
+                         const dvi_study_row *found);
+
+/** Free what sweep_open made. */
+void sweep_close(dvi_study_run *run);
 #endif

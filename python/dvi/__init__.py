@@ -16,12 +16,15 @@ from dvi.errors import (BadArgument, CallbackFailed, Error, NotConverged, NotFin
 from dvi.field import Field, March, Mesh
 from dvi.file import Rows, read
 from dvi.integrator import Integrator
+from dvi.paths import Path, path
 from dvi.recording import Event, Run
 from dvi.scene import Scene
 from dvi.study import order, work
+from dvi.sweeps import sweep, values
 from dvi.system import System
 
 __version__ = version()
 __all__ = ["BadArgument", "CallbackFailed", "Ensemble", "Error", "Event", "Field", "Integrator",
-           "March", "Mesh", "NotConverged", "NotFinite", "Rows", "Run", "Scene", "StepTooLarge",
-           "System", "Unsupported", "order", "read", "work"]
+           "March", "Mesh", "NotConverged", "NotFinite", "Path", "Rows", "Run", "Scene",
+           "StepTooLarge", "System", "Unsupported", "order", "path", "read", "sweep", "values",
+           "work"]

@@ -1,4 +1,4 @@
-"""Studies of methods: their order, and their time against their error."""
+"""Studies: the order of methods, and their time against their error."""
 import math
 
 import numpy as np
@@ -76,7 +76,8 @@ def _runs(system, t_end, reference, q=None, v=None, p=None, t=0.0):
     return runs, held
 
 
-def _check(system, status):
+def check_on(system, status):
+    """Raise what a callback of the system raised, or the exception of a status."""
     system.raise_failure()
     check(status)
 
@@ -100,7 +101,7 @@ def order(system, method, h, t_end, levels=5, reference=None, ratio=2.0, **start
     found = ffi.new("dvi_study_level[]", max(levels, lib.DVI_STUDY_LEVELS_MAX))
     result = ffi.new("dvi_study_order_result *")
     status = lib.dvi_study_order(system.pointer, method.encode(), runs, options, found, result)
-    _check(system, status)
+    check_on(system, status)
     del held
     rows = [(row.h, row.steps, row.error, row.slope or math.nan, row.energy_error, row.seconds,
              _evaluations(row.counters)) for row in found[0:result.levels]]
@@ -123,7 +124,7 @@ def work(system, methods, steps, t_end, reference="ida", rounds=3, **start):
     names = {method: ffi.new("char[]", method.encode()) for method in methods}
     listed = [(method, abs(h)) for method in names for h in steps]
     jobs = ffi.new("dvi_study_job[]", [{"method": names[method], "h": h} for method, h in listed])
-    _check(system, lib.dvi_study_work(system.pointer, runs, len(listed), jobs, rounds))
+    check_on(system, lib.dvi_study_work(system.pointer, runs, len(listed), jobs, rounds))
     del held
     made = {method: [] for method in names}
     for (method, _), job in zip(listed, jobs):

@@ -257,6 +257,90 @@ def test_measured_work(kepler):
         dvi.work(kepler, ["verlet"], [0.1], t_end=2, reference=None)
 
 
+def test_sweeps_have_the_bits_of_runs_and_of_the_command(kepler, tmp_path):
+    grid = {"e": dvi.values(0.1, 0.7, 3)}
+    table = dvi.sweep(kepler, grid, h=0.0625, t_end=1, method=METHOD, threads=2, extremes=True)
+    assert list(table["e"]) == list(grid["e"]) and set(table["status"]) == {"DVI_OK"}
+    for row in table:
+        run = dvi.Scene(SCENES / "kepler.yaml", e=row["e"]).run(METHOD, h=0.0625, t_end=1)
+        assert all(row[name] == run[name][-1] for name in ("t", "x", "p_y", "energy"))
+        assert row["least_y"] == run["y"].min() and row["most_y"] == run["y"].max()
+        assert row["energy_error"] == np.abs(run["energy"] - run["energy"][0]).max()
+    path = tmp_path / "sweep.csv"
+    subprocess.run([os.environ["DVI_COMMAND"], "sweep", SCENES / "kepler.yaml", "--method", METHOD,
+                    "--set", "e=0.1:0.7:3", "--h", "0.0625", "--t-end", "1", "--out", path],
+                   check=True)
+    said = np.genfromtxt(path, delimiter=",", names=True, dtype=None, encoding="utf-8")
+    for name in said.dtype.names:
+        assert np.array_equal(said[name], table[name]), name
+    part = dvi.sweep(kepler, grid, h=0.0625, t_end=1, method=METHOD, part=(1, 2), extremes=True)
+    assert part.tobytes() == table[1::2].tobytes()
+
+
+def test_sweeps_over_starts_of_a_function():
+    system = gravity()
+
+    def make(speed, x):
+        if speed > 2:
+            raise dvi.BadArgument("too fast")
+        return dvi.Integrator(system, "verlet").start([x, 0], v=[0, speed])
+    table = dvi.sweep(make, {"speed": [1, 3], "x": [1, 1.5]}, h=0.01, t_end=0.5)
+    assert list(table["x"]) == [1, 1.5, 1, 1.5] and list(table["steps"]) == [50, 50, 0, 0]
+    assert np.isnan(table["q1"][2]) and table.sentences == {2: "too fast", 3: "too fast"}
+    assert "<th>energy_error</th>" in table._repr_html_()
+    with pytest.raises(ZeroDivisionError):
+        dvi.sweep(lambda x: 1 / x, {"x": [0]}, h=0.1, t_end=1)
+    with pytest.raises(ValueError, match="same coordinates"):
+        dvi.sweep(lambda n: dvi.Integrator(dvi.System(int(n), potential=lambda t, q: q[0]),
+                                           "verlet").start(np.ones(int(n)), v=np.ones(int(n))),
+                  {"n": [1, 2]}, h=0.1, t_end=1)
+    with pytest.raises(dvi.BadArgument, match="part 3"):
+        dvi.sweep(make, {"speed": [1], "x": [1]}, h=0.1, t_end=1, part=(3, 2))
+    with pytest.raises(dvi.BadArgument, match="from 2"):
+        dvi.values(0, 1, 1)
+
+
+def test_an_exception_in_a_run_ends_a_sweep():
+    def potential(t, q):
+        raise KeyError("in a run")
+    broken = dvi.System(1, potential=potential, gradient=lambda t, q: q)
+    with pytest.raises(KeyError, match="in a run"):
+        dvi.sweep(lambda x: dvi.Integrator(broken, "verlet").start([x], v=[0]), {"x": [1, 2]},
+                  h=0.1, t_end=1)
+
+
+def test_sweeps_end_runs_at_events_of_scenes():
+    ball = dvi.Scene.parse("""
+parameters: {x0: 1}
+coordinates: {x: scalar}
+lagrangian: x'^2/2 - 9.81*x
+initial: {x: x0}
+events: {ground: {zero: x, stop: yes}}
+method: verlet
+step: 0.01
+until: 9
+""")
+    table = dvi.sweep(ball, {"x0": [1, 2]})
+    assert list(table["status"]) == ["event ground"] * 2
+    assert np.allclose(table["t"], np.sqrt(2 * table["x0"] / 9.81))
+
+
+def test_paths_between_ends(kepler):
+    run = kepler.run(METHOD, h=0.0625, t_end=1)
+    path = dvi.path(kepler, METHOD, 16, 1.0, q0=run.q[0], q1=run.q[-1], guess=(run.t, run.q))
+    assert path.q.shape == (17, 2) and np.allclose(path.q, run.q, atol=1e-12)
+    assert np.allclose(path.p, run.p, atol=1e-11) and path.negative == 0
+    forward = dvi.path(kepler, METHOD, 16, 1.0, q0=run.q[0], p0=run.p[0])
+    assert np.allclose(forward.q, run.q, atol=1e-11) and forward.negative == -1
+    closed = dvi.path(dvi.System(1, potential=lambda t, q: q[0]**2 / 4 + np.cos(t) * q[0]),
+                      "midpoint", 40, 2 * np.pi)
+    assert closed.q[0] == pytest.approx(closed.q[-1])
+    with pytest.raises(TypeError, match="q0 and q1"):
+        dvi.path(kepler, METHOD, 16, 1.0, q0=run.q[0])
+    with pytest.raises(ValueError, match="guess"):
+        dvi.path(kepler, METHOD, 16, 1.0, q0=run.q[0], q1=run.q[-1], guess=(run.t, run.p[:3]))
+
+
 def test_files_of_the_command(kepler, tmp_path):
     pytest.importorskip("h5py")
     path, command = tmp_path / "run.h5", os.environ["DVI_COMMAND"]

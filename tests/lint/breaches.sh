@@ -23,7 +23,7 @@ clean() {
   printf '/* .cite = "Euler1744" */\n' >>lib/src/method/element/leap.c
   printf '#include <dvi/one.h>\n' >apps/main.c
   touch tests/method/element/test_leap.c docs/methods/leap.md CMakeLists.txt
-  printf '[leap](leap.md)\n' >docs/methods/README.md
+  echo '| [leap](leap.md) | all | 2 | yes | yes | 1 |' >docs/methods/README.md
   printf '@book{Euler1744,\n}\n' >docs/references.bib
   printf 'int main(void)\n{\n  return 0;\n}\n' >apps/examples/pendulum.c
   {
@@ -172,6 +172,9 @@ for file in lib/src/method/element/leap.c tests/method/element/test_leap.c docs/
   rm $file
   if methods >log 2>&1; then echo "methods does not see that $file is missing"; rc=1; fi
 done
+clean
+echo '| [leap](leap.md) | all | 2 | yes | yes | |' >docs/methods/README.md
+if methods >log 2>&1; then echo "methods does not see an empty cell of the table"; rc=1; fi
 
 # refuses GATE WORDS: GATE fails, and says WORDS.
 refuses() {

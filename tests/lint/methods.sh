@@ -1,7 +1,7 @@
 #!/bin/sh
-# Each method has a source, a test, a page in docs/methods or in a folder there, a link to the page
-# in docs/methods/README.md and an entry of the bibliography, and each page of a method has its line
-# in methods.def.
+# Each method has a source, a test, a page in docs/methods or in a folder there, a row of the table
+# in docs/methods/README.md that links to the page and has no empty cell, and an entry of the
+# bibliography, and each page of a method has its line in methods.def.
 # Usage: methods.sh TOP NAME...
 set -u
 cd "$1" || exit 1
@@ -25,8 +25,15 @@ for name; do
   [ -e "docs/methods/$page" ] || page=${folder#method/}/$name.md
   [ -e "docs/methods/$page" ] || page=$name.md
   need "docs/methods/$page"
-  grep -q "]($page)" docs/methods/README.md 2>/dev/null ||
-    { echo "docs/methods/README.md: no link to $page"; rc=1; }
+  # method, systems, order, symplectic, symmetric, cost
+  awk -F ' *[|] *' -v link="]($page)" '
+    /^[|]/ && index($2, link) && NF == 8 {
+      filled = 1
+      for (i = 2; i <= 7; i++) if ($i == "") filled = 0
+      if (filled) found = 1
+    }
+    END { exit !found }' docs/methods/README.md 2>/dev/null ||
+    { echo "docs/methods/README.md: no row of the table with six cells links to $page"; rc=1; }
   cite=$(sed -n 's/.*\.cite = "\([^"]*\)".*/\1/p' "$source")
   if [ -z "$cite" ]; then
     echo "$source: no .cite"; rc=1

@@ -155,6 +155,24 @@ START_TEST(rows_at_given_times_lie_on_the_path)
 }
 END_TEST
 
+/* The sum of the steps, 3 * 0.1, misses these ends by a rounding, to both sides. */
+START_TEST(a_row_at_the_end_is_kept_where_steps_miss_it_by_roundings)
+{
+  const double end[] = {3 * 0.1 + 0x1p-54, 3 * 0.1 - 0x1p-54};
+  const double times[] = {0, 0.05, end[_i], end[_i]};
+  dvi_record_options options = parts(DVI_RECORD_Q | DVI_RECORD_P);
+  options.times = times;
+  options.time_count = 4;
+  const dvi_run_options run = {.h = 0.1, .t_end = end[_i]};
+  ck_assert_int_eq(dvi_record(runner, &run, &options, &recording), DVI_OK);
+  ck_assert_double_ne(dvi_integrator_time(runner), end[_i]);
+  ck_assert_int_eq(dvi_recording_rows(recording), 4);
+  check_row(DVI_RECORD_T, 2, 1, &end[_i]);
+  const double *q = dvi_recording_part(recording, DVI_RECORD_Q, NULL);
+  ck_assert_double_le(distance(2, q + 6, dvi_integrator_q(runner)), 1e-15);
+}
+END_TEST
+
 START_TEST(times_that_the_run_does_not_reach_are_refused)
 {
   const double bad[][2] = {{-0.1, 0.5}, {0.5, 0.4}, {0.5, 1.1}, {0.5, (double)NAN}};
@@ -204,6 +222,55 @@ START_TEST(events_are_kept_with_their_points)
 }
 END_TEST
 
+static int clock_value(double t, const double *q, const double *v, double *g, void *user)
+{
+  (void)q, (void)v;
+  *g = t - *(const double *)user;
+  return 0;
+}
+
+static int count_calls(dvi_integrator *integrator, void *user)
+{
+  (void)integrator;
+  ++*(int *)user;
+  return 0;
+}
+
+/* With given times the observer is called as without, also where an event ends the run. */
+START_TEST(the_programs_observer_is_called_at_every_end)
+{
+  double level = 0.5;
+  const double times[] = {0, 0.3};
+  const volatile int cancel = _i == 1;
+  int visits = 0;
+  const dvi_event event = {.value = clock_value, .terminal = 1, .user = &level};
+  dvi_record_options options = parts(0);
+  options.times = times;
+  options.time_count = 2;
+  const dvi_run_options run = {.h = 0.1,
+                               .t_end = _i == 2 ? 3 * 0.1 + 0x1p-54 : 1,
+                               .every = 100,
+                               .observe = count_calls,
+                               .user = &visits,
+                               .events = _i == 0 ? &event : NULL,
+                               .event_count = _i == 0,
+                               .cancel = &cancel};
+  ck_assert_int_eq(dvi_record(runner, &run, &options, &recording), DVI_OK);
+  ck_assert_int_eq(visits, 2);
+}
+END_TEST
+
+START_TEST(an_event_at_the_end_of_a_step_leaves_one_row_there)
+{
+  double level = 3 * 0.1 + 0x1p-54;
+  const dvi_event event = {.value = clock_value, .terminal = 1, .user = &level};
+  const dvi_run_options run = {.h = 0.1, .t_end = 1, .events = &event, .event_count = 1};
+  ck_assert_int_eq(dvi_record(runner, &run, NULL, &recording), DVI_OK);
+  ck_assert_int_eq(dvi_recording_report(recording)->end, DVI_RUN_EVENT);
+  ck_assert_int_eq(dvi_recording_rows(recording), dvi_recording_report(recording)->steps + 1);
+}
+END_TEST
+
 static int stop_late(dvi_integrator *integrator, void *user)
 {
   ++*(int *)user;
@@ -236,10 +303,13 @@ END_TEST
 START_TEST(missing_parts_are_refused)
 {
   const dvi_run_options run = {.h = 0.125, .t_end = 1};
-  const dvi_record_options constraint = parts(DVI_RECORD_CONSTRAINT), unknown = parts(1u << 20);
+  const dvi_record_options constraint = parts(DVI_RECORD_CONSTRAINT), unknown = parts(1u << 20),
+                           reactions = parts(DVI_RECORD_REACTIONS);
   ck_assert_int_eq(dvi_record(runner, &run, &constraint, &recording), DVI_UNSUPPORTED);
   check_words("record: no row at t = 0: constraint: the system declares no one-form");
   dvi_recording_destroy(&recording);
+  ck_assert_int_eq(dvi_record(runner, &run, &reactions, &recording), DVI_UNSUPPORTED);
+  check_words("reactions: the system has neither holonomic nor nonholonomic constraints");
   ck_assert_int_eq(dvi_record(runner, &run, &unknown, &recording), DVI_BAD_ARGUMENT);
   check_words("has unknown ones");
   ck_assert_int_eq(dvi_record(NULL, &run, NULL, &recording), DVI_BAD_ARGUMENT);
@@ -247,6 +317,26 @@ START_TEST(missing_parts_are_refused)
   ck_assert_int_eq(dvi_recording_rows(NULL), 0);
   ck_assert_ptr_null(dvi_recording_part(NULL, DVI_RECORD_T, NULL));
   ck_assert_ptr_null(dvi_recording_report(NULL));
+}
+END_TEST
+
+START_TEST(momenta_of_a_hamiltonian_at_given_times_are_refused_before_the_run)
+{
+  problem *held = create_problem("circle-dirac", NULL);
+  dvi_integrator *stepper = start_integrator(held, "dg-phase:degree=2");
+  const double times[] = {0.05, 0.25};
+  dvi_record_options options = parts(0);
+  options.times = times;
+  options.time_count = 2;
+  const dvi_run_options run = {.h = 0.1, .t_end = 1};
+  ck_assert_int_eq(dvi_record(stepper, &run, &options, &recording), DVI_UNSUPPORTED);
+  check_words("momenta and invariants of a Hamiltonian have no rows at given times");
+  ck_assert_double_eq(dvi_integrator_time(stepper), 0);
+  options.parts = DVI_RECORD_Q | DVI_RECORD_V;
+  ck_assert_int_eq(dvi_record(stepper, &run, &options, &recording), DVI_OK);
+  ck_assert_int_eq(dvi_recording_rows(recording), 2);
+  dvi_integrator_destroy(&stepper);
+  problem_destroy(&held);
 }
 END_TEST
 
@@ -280,10 +370,14 @@ SUITE(record)
   tcase_add_test(tests, arrays_grow_with_steps_of_chosen_lengths);
   tcase_add_loop_test(tests, rows_at_given_times_lie_on_the_path, 1, 2);
   tcase_add_loop_test(tests, rows_at_given_times_lie_on_the_path, -1, 0);
+  tcase_add_loop_test(tests, a_row_at_the_end_is_kept_where_steps_miss_it_by_roundings, 0, 2);
   tcase_add_loop_test(tests, times_that_the_run_does_not_reach_are_refused, 0, 4);
   tcase_add_test(tests, events_are_kept_with_their_points);
   tcase_add_test(tests, the_programs_observer_may_end_the_run);
+  tcase_add_loop_test(tests, the_programs_observer_is_called_at_every_end, 0, 3);
+  tcase_add_test(tests, an_event_at_the_end_of_a_step_leaves_one_row_there);
   tcase_add_test(tests, a_failed_run_has_its_rows);
   tcase_add_test(tests, missing_parts_are_refused);
+  tcase_add_test(tests, momenta_of_a_hamiltonian_at_given_times_are_refused_before_the_run);
   tcase_add_test(tests, a_recording_without_memory_fails_and_leaks_nothing);
 }

@@ -89,7 +89,8 @@ typedef struct dvi_record_options {
   unsigned parts; /**< parts of a row. Default: DVI_RECORD_Q | DVI_RECORD_P */
   /** [time_count] the times of the rows, in the order of the run, from its start to its end.
    *  Default: rows after steps. The path of a step is that of dvi_integrator_interpolate. Parts
-   *  other than T, Q, P, V, INVARIANTS and STEP then have no rows. Owned by the caller */
+   *  other than T, Q, P, V, INVARIANTS and STEP then have no rows, nor have P and INVARIANTS of a
+   *  Hamiltonian. Owned by the caller */
   const double *times;
   int64_t time_count;
 } dvi_record_options;

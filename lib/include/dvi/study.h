@@ -1,20 +1,25 @@
-/** Studies of methods on a system: the order that their errors show, and their time against their
- *  error. They are in a library of their own, dvi-study (dvi::study, pkg-config dvi-study).
+/** Studies: the order that the errors of a method show, the time of methods against their error,
+ *  and runs at all points of a grid of parameters. They are in a library of their own, dvi-study
+ *  (dvi::study, pkg-config dvi-study).
  *
- *  Other studies are calls of libdvi itself: paths between two ends in dvi/path.h, modes and
- *  resonances in dvi/spectrum.h, and many starts or parameters in dvi/ensemble.h. */
+ *  Other studies are calls of libdvi itself: paths between two ends in dvi/path.h, modes in
+ *  dvi/field.h, spectra in dvi/spectrum.h, and many members side by side in dvi/ensemble.h. */
 #ifndef DVI_STUDY_H
 #define DVI_STUDY_H
 #include <dvi/diagnostics.h>
 #include <dvi/integrator.h>
+#include <dvi/run.h>
 #include <stddef.h>
+#include <stdint.h>
 
 /** Limits. */
 enum {
-  DVI_STUDY_LEVELS_MAX = 40,    /**< largest number of levels */
-  DVI_STUDY_FIT_LEAST = 4,      /**< fewer levels than this decide nothing */
-  DVI_STUDY_ROUNDS_MAX = 99,    /**< largest number of rounds */
-  DVI_STUDY_STEPS_MAX = 1 << 28 /**< largest number of steps that a run of a given step may have */
+  DVI_STUDY_LEVELS_MAX = 40,     /**< largest number of levels */
+  DVI_STUDY_FIT_LEAST = 4,       /**< fewer levels than this decide nothing */
+  DVI_STUDY_ROUNDS_MAX = 99,     /**< largest number of rounds */
+  DVI_STUDY_STEPS_MAX = 1 << 28, /**< largest number of steps that a run of a given step may have */
+  DVI_STUDY_AXES_MAX = 64,       /**< largest number of axes of a grid */
+  DVI_STUDY_THREADS_MAX = 1024   /**< largest number of threads */
 };
 
 /** The runs of a study: their start, their end, and what q is at their end. */
@@ -90,6 +95,81 @@ typedef struct dvi_study_job {
   dvi_study_spread seconds; /**< process time of a run, over the rounds */
 } dvi_study_job;
 
+/** A parameter of a grid, and its values. */
+typedef struct dvi_study_axis {
+  int64_t count; /**< number of values, at least 1 */
+  /** [count] NULL if the values are no numbers, and the caller knows them by their index */
+  const double *value;
+} dvi_study_axis;
+
+/** A point of a grid: one value of each axis. */
+typedef struct dvi_study_point {
+  int64_t number;       /**< from 0. The last axis changes from one point to the next */
+  const int64_t *index; /**< [axes] index of the value of each axis */
+  const double *value;  /**< [axes] NaN where the values are no numbers */
+} dvi_study_point;
+
+/** The run at a point. */
+typedef struct dvi_study_run {
+  /** made and started by `open`, on a system that it may have made, too */
+  dvi_integrator *integrator;
+  /** as for dvi_run. The observer is called after that of the sweep. `cancel` must be NULL */
+  dvi_run_options options;
+  void *user; /**< for `found` and `close` */
+} dvi_study_run;
+
+/** What a run came to. */
+typedef struct dvi_study_row {
+  dvi_status status;     /**< DVI_OK, or the status with which `open` or the run failed */
+  const char *sentence;  /**< why it failed. NULL if it did not */
+  dvi_run_report report; /**< why the run ended, and the number of its steps and events */
+  double t;              /**< time of the end. NaN if there was no run */
+  const double *q, *p;   /**< [nq], [nv] the end. NULL if there was no run */
+  /** [dvi_system_invariant_count] the invariants where an observer was last called, which is the
+   *  end unless the run failed. NULL if it was never called */
+  const double *invariant;
+  /** [nq] smallest and largest coordinates where an observer was called. NULL if it was never
+   *  called, and unless they are asked for */
+  const double *least, *most;
+  /** largest change of the energy since the start, less what forces supplied if the integrator
+   *  keeps balances, where an observer was called. NaN if it was never called */
+  double energy_error;
+} dvi_study_row;
+
+/** A sweep. Zero means default. The callbacks return DVI_OK or 0 if all is well. */
+typedef struct dvi_study_sweep_options {
+  size_t size; /**< sizeof(dvi_study_sweep_options) */
+  int axes;    /**< number of axes, from 1 to DVI_STUDY_AXES_MAX */
+  const dvi_study_axis *axis;
+  /** Points `part`, part + parts, .. of the grid alone, with the bits that they have in a sweep of
+   *  all of it: 0 <= part < parts (default all of them) */
+  int64_t part, parts;
+  const char *skip; /**< [points of the grid] not 0 for points to leave out. May be NULL */
+  int threads;      /**< runs at a time, up to DVI_STUDY_THREADS_MAX (default 1) */
+  int extremes;     /**< not 0 for `least` and `most` of each row */
+  /** Make the run of a point, which is all zero before. Called from several threads at once. On
+   *  failure the point has a row all the same, without a run */
+  dvi_status (*open)(const dvi_study_point *point, dvi_study_run *run, void *user);
+  /** Take a row, valid during the call. Called by one thread at a time, in the order in which runs
+   *  end. A number other than 0 ends the sweep with DVI_CALLBACK_FAILED */
+  int (*found)(const dvi_study_point *point, const dvi_study_run *run, const dvi_study_row *row,
+               void *user);
+  /** Free what `open` made, also where it failed. Called from several threads at once. May be
+   *  NULL, and the integrators are then destroyed */
+  void (*close)(dvi_study_run *run, void *user);
+  void *user;
+  /** The sweep ends when this becomes not 0. Runs under way end as in dvi_run_options, and have no
+   *  rows. May be NULL */
+  const volatile int *cancel;
+} dvi_study_sweep_options;
+
+/** How far a sweep came. */
+typedef struct dvi_study_sweep_report {
+  int64_t rows;   /**< points that have rows */
+  int64_t failed; /**< points whose rows have another status than DVI_OK */
+  int cancelled;  /**< not 0 if `cancel` ended the sweep before its last point */
+} dvi_study_sweep_report;
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -125,6 +205,41 @@ dvi_status dvi_study_order(const dvi_system *system, const char *method, const d
  *  @retval (others)          as dvi_study_order */
 dvi_status dvi_study_work(const dvi_system *system, const dvi_study_runs *runs, int count,
                           dvi_study_job *job, int rounds);
+
+/** Run a method at each point of a grid, on several threads. A point has the same bits whatever the
+ *  threads, the part and the other points are.
+ *
+ *  @param[out] report  filled on failure, too. May be NULL
+ *  @retval DVI_OK            every point has its row, or report->cancelled is set. Runs that fail
+ *                            leave their status in their rows
+ *  @retval DVI_BAD_ARGUMENT  a pointer is NULL, the size is not that of the struct, or a number is
+ *                            out of range
+ *  @retval DVI_CALLBACK_FAILED  `found` returned another number than 0
+ *  @retval DVI_BAD_STATE     `open` gave no integrator, or set `cancel` of its options
+ *  @retval DVI_NO_MEMORY     memory could not be allocated */
+dvi_status dvi_study_sweep(const dvi_study_sweep_options *options, dvi_study_sweep_report *report);
+
+/** Count the points of a grid, the product of the numbers of values. -1 if there are no axes, too
+ *  many of them, an axis without values, or more points than an int64_t can count. */
+int64_t dvi_study_points(int axes, const dvi_study_axis *axis);
+
+/** Write equally spaced values, both ends included: from + (to - from) k/(count - 1), and `to`
+ *  itself as the last one.
+ *
+ *  @param      count  at least 2
+ *  @param[out] value  [count]
+ *  @retval DVI_BAD_ARGUMENT  count is below 2, a number is not finite, or the range is too wide for
+ *                            a double. No value is written */
+dvi_status dvi_study_range(double from, double to, int64_t count, double *value);
+
+/** Call work(user) on so many threads at once, the caller's among them. If the operating system
+ *  gives no more threads, the work goes on with fewer. Returns when all of them are done.
+ *
+ *  @param threads  from 1 to DVI_STUDY_THREADS_MAX. Other numbers become the nearest one */
+void dvi_study_parallel(int threads, void (*work)(void *user), void *user);
+
+/** Return the number of cores of this machine, at most DVI_STUDY_THREADS_MAX. */
+int dvi_study_cores(void);
 
 /** Fit an order to the longest run of levels with a settled slope. The slopes of its coarser and
  *  its finer half agree within 0.1, and the standard error of the fitted slope is at most 0.05. Of

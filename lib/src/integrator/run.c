@@ -24,10 +24,19 @@ static double mechanics_time(const void *of)
 
 /* Return the time left, with the clock's compensation. At large times rounding is a large part of a
  * step. */
+static double time_left(const dvi_integrator *I, double t_end)
+{
+  return (t_end - I->now.t) + I->now.t_compensation;
+}
+
 static double mechanics_time_left(const void *of, double t_end)
 {
-  const dvi_integrator *I = ((const mechanics *)of)->integrator;
-  return (t_end - I->now.t) + I->now.t_compensation;
+  return time_left(((const mechanics *)of)->integrator, t_end);
+}
+
+int dvi__run_is_at_end(const dvi_integrator *I, double t_end)
+{
+  return fabs(time_left(I, t_end)) <= dvi__clock_error(I->now.t, t_end);
 }
 
 static long mechanics_steps(const void *of)

@@ -17,4 +17,7 @@ typedef struct dvi__keeper {
 dvi_status dvi__run(dvi_integrator *integrator, const dvi_run_options *options,
                     const dvi__keeper *keeper, dvi_run_report *report);
 
+/* Tell whether a run to t_end is at its end, from which a sum of steps differs by roundings. */
+int dvi__run_is_at_end(const dvi_integrator *integrator, double t_end);
+
 #endif

@@ -66,6 +66,10 @@ typedef struct dvi__march_options {
   const volatile int *cancel;
 } dvi__march_options;
 
+/* Return the distance by which a sum of steps up to t may miss the end, a few roundings of the
+ * times. */
+double dvi__clock_error(double t, double t_end);
+
 /* Check the options against the time, and run to t_end (dvi/run.h). */
 dvi_status dvi__march(void *of, const dvi__marcher *marcher, const dvi__march_options *options,
                       dvi_run_report *report);

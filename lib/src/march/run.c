@@ -26,10 +26,14 @@ static double march_time(const march *m)
   return m->marcher->time(m->of);
 }
 
-/* Return the distance by which a sum of steps may miss the end, a few roundings of the times. */
+double dvi__clock_error(double t, double t_end)
+{
+  return 16 * DBL_EPSILON * fmax(fabs(t_end), fabs(t));
+}
+
 static double clock_error(const march *m, double t_end)
 {
-  return 16 * DBL_EPSILON * fmax(fabs(t_end), fabs(march_time(m)));
+  return dvi__clock_error(march_time(m), t_end);
 }
 
 static dvi_status check_options(const march *m)

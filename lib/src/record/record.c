@@ -42,6 +42,7 @@ typedef struct record {
   double *point;          /* [nq+2*nv] q, v and p of the path at a given time */
   int64_t times_done;
   long visits;       /* of the observer: the start, and every step where times are given */
+  int ended;         /* an event ends the run */
   dvi_status status; /* of a row or an event that failed, and its sentence */
   char sentence[DVI__SENTENCE_SIZE];
 } record;
@@ -84,12 +85,12 @@ static dvi_status measure_state(const record *r)
   return DVI_OK;
 }
 
-/* Keep the present state. */
-static dvi_status record_state(const record *r)
+/* Keep the present state, with the time t. */
+static dvi_status record_state(const record *r, double t)
 {
   const dvi_integrator *I = r->integrator;
   DVI_TRY(dvi__recording_open_rows(r->recording, 1));
-  set_part(r, DVI__ROW_T, dvi_integrator_time(I));
+  set_part(r, DVI__ROW_T, t);
   set_part(r, DVI__ROW_STEP, dvi_integrator_last_step(I));
   copy_part(r, DVI__ROW_Q, r->recording->nq, dvi_integrator_q(I));
   copy_part(r, DVI__ROW_P, r->recording->nv, dvi_integrator_p(I));
@@ -118,15 +119,17 @@ static dvi_status record_point(const record *r, double t)
 }
 
 /* Keep the points of the last step's path at the given times, in the run's direction. The start is
- * the present state. */
+ * the present state, and the end, too, where the sum of the steps misses given times by roundings.
+ */
 static dvi_status record_times(record *r)
 {
   const double now = dvi_integrator_time(r->integrator), forward = r->run->h > 0 ? 1 : -1;
+  const int at_end = dvi__run_is_at_end(r->integrator, r->run->t_end);
   for (; r->times_done < r->options.time_count; r->times_done++) {
-    const double t = r->options.times[r->times_done];
-    if (forward * (t - now) > 0) return DVI_OK;
+    const double t = r->options.times[r->times_done], ahead = forward * (t - now);
+    if (ahead > 0 && !at_end) return DVI_OK;
     DVI_TRY(dvi__recording_open_rows(r->recording, 1));
-    DVI_TRY(t == now ? record_state(r) : record_point(r, t));
+    DVI_TRY(ahead < 0 ? record_point(r, t) : record_state(r, ahead > 0 ? t : now));
   }
   return DVI_OK;
 }
@@ -187,15 +190,32 @@ static dvi_status close_trail(void *user, const dvi__trail *trail)
 
 /* ---- the run ---- */
 
+/* Keep the present state, unless the last row has it: a step is taken back if a terminal event
+ * occurs at its start but for roundings. */
+static dvi_status record_visit(const record *r)
+{
+  const dvi_recording *made = r->recording;
+  const double now = dvi_integrator_time(r->integrator);
+  if (made->rows > 0 && made->part[DVI__ROW_T].number[made->rows - 1] == now) return DVI_OK;
+  return record_state(r, now);
+}
+
+/* Tell whether the run calls no observer after this one. */
+static int is_last_visit(const record *r)
+{
+  return r->ended || (r->run->cancel != NULL && *r->run->cancel) ||
+         dvi__run_is_at_end(r->integrator, r->run->t_end);
+}
+
 static int record_observe(dvi_integrator *integrator, void *user)
 {
   record *r = user;
   const long every = r->options.times != NULL && r->run->every > 0 ? r->run->every : 1;
-  const dvi_status status = r->options.times != NULL ? record_times(r) : record_state(r);
+  const dvi_status status = r->options.times != NULL ? record_times(r) : record_visit(r);
   if (status != DVI_OK) return refuse(r, status, "row");
   if (r->run->observe == NULL) return 0;
-  const int at_end = dvi_integrator_time(integrator) == r->run->t_end;
-  return r->visits++ % every == 0 || at_end ? r->run->observe(integrator, r->run->user) : 0;
+  return r->visits++ % every == 0 || is_last_visit(r) ? r->run->observe(integrator, r->run->user)
+                                                      : 0;
 }
 
 static int watched_value(double t, const double *q, const double *v, double *g, void *user)
@@ -209,7 +229,9 @@ static int watched_occurred(double t, const double *q, const double *v, void *us
   const watched_event *w = user;
   const dvi_status status = dvi__recording_add_event(w->record->recording, w->index, t, q, v);
   if (status != DVI_OK) return refuse(w->record, status, "event");
-  return w->event->occurred != NULL ? w->event->occurred(t, q, v, w->event->user) : 0;
+  const int returned = w->event->occurred != NULL ? w->event->occurred(t, q, v, w->event->user) : 0;
+  w->record->ended = w->event->terminal || returned > 0;
+  return returned;
 }
 
 static void watch_events(record *r)
@@ -243,10 +265,18 @@ static dvi_status run_recorded(record *r)
 
 static dvi_status check_parts(const record *r)
 {
-  const unsigned parts = r->options.parts;
+  const unsigned parts = r->options.parts, of_momenta = DVI_RECORD_P | DVI_RECORD_INVARIANTS;
   if ((parts & ~(unsigned)KNOWN_PARTS) != 0)
     return dvi__fail(DVI_BAD_ARGUMENT, "record: parts = %#x has unknown ones; %#x are all", parts,
                      (unsigned)KNOWN_PARTS);
+  if ((parts & DVI_RECORD_REACTIONS) != 0 && dvi_system_constraint_count(r->system) == 0)
+    return dvi__fail(DVI_UNSUPPORTED,
+                     "record: reactions: the system has neither holonomic nor nonholonomic "
+                     "constraints");
+  if (r->options.times != NULL && (parts & of_momenta) != 0 && r->system->dynamics->by_momentum)
+    return dvi__fail(DVI_UNSUPPORTED,
+                     "record: momenta and invariants of a Hamiltonian have no rows at given times; "
+                     "record coordinates and velocities there, or rows after steps");
   if (r->options.times != NULL && (parts & ~(unsigned)PATH_PARTS) != 0)
     return dvi__fail(DVI_BAD_ARGUMENT,
                      "record: constraint and reactions have no rows at given times; record them "
