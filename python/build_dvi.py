@@ -2,7 +2,8 @@
 
 The public headers are the declarations: the C preprocessor leaves of them what cffi reads. The
 library is found by pkg-config (dvi-scene, dvi-study). DVI_INCLUDE and DVI_LIBRARY name the folders
-of a build that is not installed.
+of a build that is not installed. The module finds the library there at run time, too, or in
+DVI_RUNPATH, or, if that is empty, where the loader looks.
 """
 import os
 import pathlib
@@ -131,11 +132,12 @@ def declarations(include):
 
 include = folders("DVI_INCLUDE", "--cflags-only-I") or ["/usr/local/include", "/usr/include"]
 library = folders("DVI_LIBRARY", "--libs-only-L")
+runpath = os.environ["DVI_RUNPATH"].split() if "DVI_RUNPATH" in os.environ else library
 ffibuilder = cffi.FFI()
 ffibuilder.cdef(declarations(include))
 ffibuilder.cdef(CDEF)
 ffibuilder.set_source("dvi._dvi", SOURCE, include_dirs=include, library_dirs=library,
-                      runtime_library_dirs=library, libraries=["dvi-study", "dvi-scene", "dvi"])
+                      runtime_library_dirs=runpath, libraries=["dvi-study", "dvi-scene", "dvi"])
 
 if __name__ == "__main__":
     ffibuilder.compile(verbose=False)
