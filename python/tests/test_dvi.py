@@ -213,6 +213,18 @@ until: 1
     assert march.advance(0.5).t == 0.5
     assert march.observables["energy"] == pytest.approx(first, rel=0.02)
     assert march.vectors("E").shape == (64, 3)
+    state = march.save()
+    rows = march.record(t_end=1, every=0.1, forms=["E"])
+    assert np.allclose(rows["t"], np.linspace(0.5, 1, 6)) and rows["t"][-1] == march.t == 1
+    assert np.array_equal(rows["E"][-1], march["E"])
+    assert rows["energy"][-1] == march.observables["energy"]
+    last = march["E"]
+    with pytest.raises(dvi.BadArgument, match="cut short"):
+        march.restore(state[:-1])
+    some = march.restore(state).record(t_end=1, times=[0.7, 1], forms={"E": [3, 7]})
+    assert np.array_equal(some["E"][1], last[[3, 7]]) and some["E"].shape == (2, 2)
+    with pytest.raises(dvi.BadArgument, match="t_end"):
+        march.record(t_end=0.5)
 
 
 def test_errors_have_the_librarys_sentences(kepler):
@@ -237,6 +249,10 @@ def test_measured_orders(kepler):
     assert "holds" in table._repr_html_() and "<th>energy_error</th>" in table._repr_html_()
     by_ida = dvi.order(kepler, "galerkin:degree=2", h=0.1, t_end=2, levels=4, reference="ida")
     assert np.allclose(by_ida["error"][:2], table["error"][:2] * 16 / 15, rtol=0.05)
+    searched = dvi.order(kepler, "galerkin:degree=2", h=None, t_end=2, reference="ida")
+    assert searched.holds and np.all(searched["error"] > searched.floor)
+    with pytest.raises(dvi.BadArgument, match="a search for steps needs"):
+        dvi.order(kepler, "verlet", h=None, t_end=2)
     with pytest.raises(dvi.BadArgument, match="ratio"):
         dvi.order(kepler, "verlet", h=0.1, t_end=2, ratio=1)
     with pytest.raises(dvi.BadArgument, match="levels"):

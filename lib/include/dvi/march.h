@@ -15,6 +15,7 @@
 #ifndef DVI_MARCH_H
 #define DVI_MARCH_H
 #include <dvi/field.h>
+#include <dvi/run.h>
 
 /** A march. */
 typedef struct dvi_march dvi_march;
@@ -61,6 +62,28 @@ typedef struct dvi_march_facts {
   int64_t steps;      /**< steps since the start, or events of asynchronous ones */
   int64_t updates;    /**< updates of (k+1)-cells since the start, which cost time */
 } dvi_march_facts;
+
+/** Options of a recording. Zero means the default. */
+typedef struct dvi_march_record_options {
+  size_t size;  /**< sizeof(dvi_march_record_options) */
+  double t_end; /**< end of the run, not before the march's time */
+  /** Time between two rows, above 0. They stand at the start, each `every` later, and at t_end.
+   *  Default: at the start and at t_end alone */
+  double every;
+  /** [time_count] the times of the rows in place of that, ascending, from the march's time to
+   *  t_end. Owned by the caller */
+  const double *times;
+  int64_t time_count;
+  /** Parts of a row, DVI_RECORD_A, _E, _B and _OBSERVABLES joined by |. Default:
+   *  DVI_RECORD_OBSERVABLES */
+  unsigned parts;
+  const int *cell[3];    /**< [cell_count] by dvi_march_form, the cells of a part. Default: all */
+  int64_t cell_count[3]; /**< by dvi_march_form */
+  const int *observable; /**< [observable_count] those of a row. Default: all */
+  int observable_count;
+  /** The run ends at most 32 of the longest steps after this becomes not 0. May be NULL */
+  const volatile int *cancel;
+} dvi_march_record_options;
 
 enum { DVI_LAWS_MAX = 8 };
 
@@ -159,6 +182,25 @@ dvi_status dvi_march_observe(const dvi_march *march, int i, double *value);
 /** Collect facts about a march. */
 void dvi_march_facts_of(const dvi_march *march, dvi_march_facts *facts);
 
+/** Advance to t_end, and record what the march shows on the way.
+ *
+ *  The march moves as by dvi_march_advance, with the same bits. dvi_recording_part has the rows,
+ *  and DVI_RECORD_T their times. The report (dvi_recording_report) counts steps as dvi_march_facts,
+ *  and has no events. A run that is cancelled ends with a row where it stands, unless times are
+ *  given.
+ *
+ *  @param[out] recording  owned by the caller, who may release the march before it. It has all rows
+ *                         up to a failure of the march, too. NULL if nothing was recorded
+ *  @retval DVI_BAD_ARGUMENT  a time is not finite, outside of the run or goes back, there is no
+ *                            such part, cell or observable, or cells are chosen of a part that is
+ *                            not recorded
+ *  @retval DVI_BAD_SIZE      a row, or their number, is too large to be counted
+ *  @retval DVI_UNSUPPORTED   the march has no such form
+ *  @retval DVI_NO_MEMORY     there is no memory for the next row
+ *  @retval (others)          as dvi_march_advance, dvi_march_sample and dvi_march_observe */
+dvi_status dvi_march_record(dvi_march *march, const dvi_march_record_options *options,
+                            dvi_recording **recording);
+
 /** Write the state to a file. A march that is made in the same way and loads it goes on with the
  *  same bits.
  *
@@ -171,6 +213,19 @@ dvi_status dvi_march_save(const dvi_march *march, const char *path);
  *  @retval DVI_IO_ERROR  the file could not be read
  *  @retval DVI_BAD_FILE  it is no saved state, it is damaged, or it is of another march */
 dvi_status dvi_march_load(dvi_march *march, const char *path);
+
+/** Write the state to memory, with the bytes of dvi_march_save.
+ *
+ *  @param[out] bytes     [capacity] the state. NULL if only its size is wanted
+ *  @param      capacity  size of the array in bytes
+ *  @param[out] size      bytes that the state takes, also where the capacity is too small
+ *  @retval DVI_BAD_SIZE  the capacity is too small. Nothing is written */
+dvi_status dvi_march_save_memory(const dvi_march *march, void *bytes, size_t capacity,
+                                 size_t *size);
+
+/** Read a state that dvi_march_save_memory wrote, or the bytes of a file of dvi_march_save.
+ *  Otherwise this is dvi_march_load. */
+dvi_status dvi_march_load_memory(dvi_march *march, const void *bytes, size_t size);
 
 /** Measure the laws of a field on a march that begins at random.
  *

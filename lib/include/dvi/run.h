@@ -80,7 +80,11 @@ typedef enum dvi_record_part {
   DVI_RECORD_STEP = 32,       /**< [1] length of the last step. 0 before the first */
   DVI_RECORD_CONSTRAINT = 64, /**< [1] distance from the constraint, dvi_integrator_constraint */
   /** [dvi_system_constraint_count] multipliers, dvi_integrator_reactions */
-  DVI_RECORD_REACTIONS = 128
+  DVI_RECORD_REACTIONS = 128,
+  DVI_RECORD_A = 256,           /**< [cells] the form A of a march, dvi_march_record alone */
+  DVI_RECORD_E = 512,           /**< [cells] its form E */
+  DVI_RECORD_B = 1024,          /**< [cells] its form B */
+  DVI_RECORD_OBSERVABLES = 2048 /**< [observables] its energy and so on */
 } dvi_record_part;
 
 /** Options of a recording. Zero means default. */

@@ -1,6 +1,7 @@
 /* Marches of any kind (dvi/march.h): the checks that all kinds share, and their files. */
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "core/memory.h"
 #include "core/status.h"
@@ -153,18 +154,46 @@ void dvi_march_facts_of(const dvi_march *march, dvi_march_facts *facts)
   facts->method = march->kind->name;
 }
 
-/* ---- files ---- */
+/* ---- states in files and in memory ---- */
+
+static dvi_status pack(const dvi_march *march, dvi__sections_writer *writer)
+{
+  dvi__sections_start(writer, 1 << 12);
+  march->kind->save(march->self, writer);
+  return dvi__sections_finish(writer);
+}
 
 dvi_status dvi_march_save(const dvi_march *march, const char *path)
 {
   dvi__sections_writer writer;
   DVI_TRY(check_started(march));
   if (path == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "march: a file's name is needed");
-  dvi__sections_start(&writer, 1 << 12);
-  march->kind->save(march->self, &writer);
-  DVI_TRY(dvi__sections_finish(&writer));
+  DVI_TRY(pack(march, &writer));
   const dvi_status status = dvi__write_whole(path, writer.bytes, writer.size);
   dvi__release(writer.bytes);
+  return status;
+}
+
+dvi_status dvi_march_save_memory(const dvi_march *march, void *bytes, size_t capacity, size_t *size)
+{
+  dvi__sections_writer writer;
+  DVI_TRY(check_started(march));
+  if (size == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "march: a place for the size is needed");
+  DVI_TRY(pack(march, &writer));
+  const size_t needed = *size = writer.size;
+  if (bytes != NULL && needed <= capacity) memcpy(bytes, writer.bytes, needed);
+  dvi__release(writer.bytes);
+  if (bytes == NULL || needed <= capacity) return DVI_OK;
+  return dvi__fail(DVI_BAD_SIZE, "march: %zu bytes of room for its state; %zu are needed", capacity,
+                   needed);
+}
+
+/* Take the state of sections whose reading has this status. */
+static dvi_status take_state(dvi_march *march, dvi__sections *sections, dvi_status status)
+{
+  if (status == DVI_OK) status = march->kind->load(march->self, sections);
+  dvi__sections_clear(sections);
+  if (status == DVI_OK) march->started = 1;
   return status;
 }
 
@@ -175,9 +204,20 @@ dvi_status dvi_march_load(dvi_march *march, const char *path)
   if (march == NULL || path == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "march: a march and a file's name are needed");
   (void)snprintf(name, sizeof name, "checkpoint %s", path);
-  dvi_status status = dvi__sections_read(path, &sections);
-  if (status == DVI_OK) status = march->kind->load(march->self, &sections);
-  dvi__sections_clear(&sections);
-  if (status == DVI_OK) march->started = 1;
-  return status;
+  const dvi_status status = dvi__sections_read(path, &sections);
+  return take_state(march, &sections, status);
+}
+
+/* Read a copy, which is aligned as numbers must be. */
+dvi_status dvi_march_load_memory(dvi_march *march, const void *bytes, size_t size)
+{
+  dvi__sections sections = {.name = NULL};
+  if (march == NULL || bytes == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "march: a march and the bytes of its state are needed");
+  sections.own = dvi__duplicate(bytes, size, 1);
+  if (sections.own == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "march: no memory for a state of %zu bytes", size);
+  const dvi_status status = dvi__sections_check(&sections, "checkpoint in memory", sections.own,
+                                                size);
+  return take_state(march, &sections, status);
 }

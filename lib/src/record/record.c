@@ -15,14 +15,11 @@
 #include "system/evaluate/dynamics.h"
 
 enum {
-  KNOWN_PARTS = (1 << DVI__PARTS) - 1,
+  KNOWN_PARTS = (1 << DVI__ROW_A) - 1,
   /* parts that rows at given times may have */
   PATH_PARTS = DVI_RECORD_T | DVI_RECORD_Q | DVI_RECORD_P | DVI_RECORD_V | DVI_RECORD_INVARIANTS |
-               DVI_RECORD_STEP,
-  FIRST_ROWS = 256
+               DVI_RECORD_STEP
 };
-/* More numbers than these are not reserved for a run whose steps are known. */
-static const double most_reserved = 1e8;
 
 /* An event of the program. */
 typedef struct watched_event {
@@ -307,10 +304,10 @@ static int64_t rows_expected(const record *r)
   const double every = r->run->every > 0 ? (double)r->run->every : 1,
                way = r->run->t_end - dvi_integrator_time(r->integrator),
                rows = floor(way / r->run->h / every) + 3 + DVI__TOGETHER,
-               most = most_reserved / dvi__row_width(r->system, r->options.parts);
+               most = DVI__MOST_RESERVED / dvi__row_width(r->system, r->options.parts);
   if (r->options.times != NULL) return r->options.time_count;
   if (dvi_integrator_chooses_steps(r->integrator) || !(rows >= 3 && rows <= most))
-    return FIRST_ROWS;
+    return DVI__FIRST_ROWS;
   return (int64_t)rows;
 }
 

@@ -102,22 +102,31 @@ dvi_status dvi__recording_add_event(dvi_recording *r, int event, double t, const
 
 /* ---- the recording ---- */
 
-dvi_status dvi__recording_create(const dvi_system *system, unsigned parts, int64_t rows,
-                                 dvi_recording **recording)
+dvi_status dvi__recording_allocate(const int width[DVI__PARTS], int64_t rows,
+                                   dvi_recording **recording)
 {
   dvi_recording *r = DVI_NEW(dvi_recording, 1);
   if (r == NULL) return dvi__fail(DVI_NO_MEMORY, "record: no memory for a recording");
-  r->system = system;
-  r->nq = dvi_system_nq(system);
-  r->nv = dvi_system_nv(system);
-  for (int k = 0; k < DVI__PARTS; k++)
-    r->part[k].width = (parts >> k & 1) != 0 ? part_width(system, (dvi__row_part)k) : 0;
+  for (int k = 0; k < DVI__PARTS; k++) r->part[k].width = width[k];
   const dvi_status status = reserve_rows(r, rows);
   if (status == DVI_OK)
     *recording = r;
   else
     dvi_recording_destroy(&r);
   return status;
+}
+
+dvi_status dvi__recording_create(const dvi_system *system, unsigned parts, int64_t rows,
+                                 dvi_recording **recording)
+{
+  int width[DVI__PARTS];
+  for (int k = 0; k < DVI__PARTS; k++)
+    width[k] = (parts >> k & 1) != 0 ? part_width(system, (dvi__row_part)k) : 0;
+  DVI_TRY(dvi__recording_allocate(width, rows, recording));
+  (*recording)->system = system;
+  (*recording)->nq = dvi_system_nq(system);
+  (*recording)->nv = dvi_system_nv(system);
+  return DVI_OK;
 }
 
 void dvi_recording_destroy(dvi_recording **recording)

@@ -15,6 +15,10 @@ typedef enum dvi__row_part {
   DVI__ROW_STEP,
   DVI__ROW_CONSTRAINT,
   DVI__ROW_REACTIONS,
+  DVI__ROW_A, /* from here on those of a march */
+  DVI__ROW_E,
+  DVI__ROW_B,
+  DVI__ROW_OBSERVABLES,
   DVI__PARTS
 } dvi__row_part;
 
@@ -30,7 +34,7 @@ struct dvi_recording {
   dvi_recorded_event *event; /* [event_room], whose q and v are set by dvi_recording_event */
   double *event_point;       /* [event_room*(nq+nv)] */
   int64_t events, event_room;
-  const dvi_system *system;
+  const dvi_system *system; /* NULL for a march */
   int nq, nv;
   dvi_run_report report;
 };
@@ -38,7 +42,17 @@ struct dvi_recording {
 /* Count the numbers of a row with these parts. */
 int dvi__row_width(const dvi_system *system, unsigned parts);
 
-/* Make a recording without rows for parts of a system, with room for some rows. */
+/* More numbers than these are not reserved for a run whose rows are known. Others begin with room
+ * for these rows. */
+#define DVI__MOST_RESERVED 1e8
+enum { DVI__FIRST_ROWS = 256 };
+
+/* Make a recording without rows, with room for some, for parts with these numbers of a row, 0 of a
+ * part that is not kept. */
+dvi_status dvi__recording_allocate(const int width[DVI__PARTS], int64_t rows,
+                                   dvi_recording **recording);
+
+/* Make the recording of an integrator of a system. */
 dvi_status dvi__recording_create(const dvi_system *system, unsigned parts, int64_t rows,
                                  dvi_recording **recording);
 
