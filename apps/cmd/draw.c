@@ -230,11 +230,12 @@ static const option command_options[] = {
 
 static const command_line command = {
     .name = "plot",
-    .synopsis = "FILE.csv --axes X:Y[,X:Y..] --out FILE.svg [OPTIONS]\n"
+    .synopsis = "FILE.csv|FILE.h5 --axes X:Y[,X:Y..] --out FILE.svg [OPTIONS]\n"
                 "       dvi plot FILE.vtu [--field NAME] --out FILE.svg [OPTIONS]",
     .operand = "FILE",
-    .summary = "Draw columns of a CSV file that dvi has written against each other; - is "
-               "standard input. Or draw a grid and its fields.\n",
+    .summary =
+        "Draw columns of a CSV file, or of HDF5, that dvi has written against each other; - is "
+        "standard input. Or draw a grid and its fields.\n",
     .options = command_options,
     .details = details,
 };

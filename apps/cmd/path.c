@@ -156,7 +156,7 @@ static const option command_options[] = {
     {.name = "guess",
      OPTION_AT(path_request, guess),
      .value = "FILE",
-     .help = "points of a guess: CSV with t and the coordinates"},
+     .help = "points of a guess: CSV or HDF5 with t and the coordinates"},
     {.name = "continue",
      OPTION_AT(path_request, follow),
      .value = "NAME=FROM:TO:PARTS",

@@ -55,6 +55,7 @@ static int read_columns(spectrum_study *s)
     if (series_want(&s->table, name) < 0) return FAILED;
   }
   if (s->request->columns != NULL && series_want(&s->table, "t") < 0) return FAILED;
+  s->table.of_run = true;
   int code = series_read("spectrum", s->path, &s->table);
   if (code != DONE) return code;
   s->time = -1;
@@ -175,7 +176,8 @@ typedef struct spectrum_titles {
   char (*name)[2 * FIELD_SIZE];
 } spectrum_titles;
 
-enum { TITLES = 6 };
+/* A decay is resolved if it is so many times its standard error. */
+enum { TITLES = 6, RESOLVED = 3 };
 
 static const char *probe_name(const spectrum_study *s, int p)
 {
@@ -200,12 +202,22 @@ static bool titles_create(const spectrum_study *s, spectrum_titles *titles)
   return true;
 }
 
-static void fill_table(const spectrum_study *s, result_table *rows)
+/* Take away a decay that is not resolved, and Q with it. */
+static dvi_spectral_line resolved(const dvi_spectral_line *line)
+{
+  dvi_spectral_line shown = *line;
+  if (!(fabs(line->decay) > RESOLVED * line->error)) shown.decay = shown.quality = (double)NAN;
+  return shown;
+}
+
+/* Fill the table for people, or with all numbers for a CSV file. */
+static void fill_table(const spectrum_study *s, bool for_people, result_table *rows)
 {
   for (int k = 0; k < s->lines; k++) {
     const dvi_spectral_line *line = &s->line[k];
-    const double row[TITLES] = {k + 1,         line->frequency, line->decay,
-                                line->quality, line->amplitude, line->error};
+    const dvi_spectral_line shown = for_people ? resolved(line) : *line;
+    const double row[TITLES] = {k + 1,         line->frequency, shown.decay,
+                                shown.quality, line->amplitude, line->error};
     for (int i = 0; i < TITLES; i++) table_number(rows, row[i]);
     for (int p = 0; p < s->probes; p++) {
       table_number(rows, s->amplitude[k * s->probes + p]);
@@ -236,14 +248,18 @@ static int print_lines(const spectrum_study *s)
   const char *csv = s->request->csv;
   FILE *stream = csv != NULL && strcmp(csv, "-") == 0 ? stderr : stdout;
   spectrum_titles titles = {0};
-  result_table *rows = titles_create(s, &titles) ? table_create(titles.column) : NULL;
-  if (rows != NULL) fill_table(s, rows);
-  bool good = table_good(rows);
+  const bool titled = titles_create(s, &titles);
+  result_table *shown = titled ? table_create(titles.column) : NULL,
+               *rows = titled ? table_create(titles.column) : NULL;
+  if (shown != NULL) fill_table(s, true, shown);
+  if (rows != NULL) fill_table(s, false, rows);
+  bool good = table_good(shown) && table_good(rows);
   if (good) {
     print_heading(s, stream);
-    if (s->lines > 0) table_print(rows, stream, 0, 0, table_rows(rows));
+    if (s->lines > 0) table_print(shown, stream, 0, 0, table_rows(shown));
     good = csv == NULL || table_write(rows, csv);
   }
+  table_destroy(&shown);
   table_destroy(&rows);
   free(titles.column);
   free(titles.name);
@@ -256,6 +272,8 @@ static const char *const details[] = {
     "column t.\n"
     "The frequencies are not those of a Fourier transform: without noise they are right to "
     "roundoff, with noise to the standard error in the last column.\n",
+    "A decay, and Q, are printed where the decay is three times its standard error; --csv has them "
+    "all.\n",
     "Columns of --csv: index, omega, decay, Q = omega/(2 decay), the largest amplitude of all "
     "columns, the standard error of omega and of the decay, then amplitude_NAME and phase_NAME of "
     "each column NAME.\n",
@@ -296,10 +314,10 @@ static const option command_options[] = {
 
 static const command_line command = {
     .name = "spectrum",
-    .synopsis = "FILE.csv [OPTIONS]",
+    .synopsis = "FILE.csv|FILE.h5 [OPTIONS]",
     .operand = "FILE.csv",
-    .summary = "Find the frequencies, decay rates and amplitudes in columns of a CSV file that dvi "
-               "has written; - is standard input.\n",
+    .summary = "Find the frequencies, decay rates and amplitudes in columns of a file that dvi "
+               "run has written; - is standard input.\n",
     .options = command_options,
     .details = details,
 };

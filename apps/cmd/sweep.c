@@ -12,7 +12,7 @@
 #include "cli/options.h"
 #include "cli/progress.h"
 #include "cli/signals.h"
-#include "store/store.h"
+#include "module/store.h"
 #include "store/table_output.h"
 #include "sweep/sweep_part.h"
 #include "sweep/sweep_point.h"

@@ -10,6 +10,7 @@
 #include "cli/outputs.h"
 #include "load/open.h"
 #include "load/scene.h"
+#include "module/store.h"
 #include "view/rerun.h"
 #include "view/source.h"
 
@@ -149,11 +150,8 @@ static int take_source(const view_request *r, const char *path, view_source *sou
 {
   const bool has_grids = ends_with(path, ".pvd") || ends_with(path, ".vtu");
   if (has_grids) return take_grids(r, path, source);
-  if (ends_with(path, ".csv") || strcmp(path, "-") == 0) return take_rows(r, path, source);
-  if (ends_with(path, ".h5") || ends_with(path, ".vtkhdf"))
-    return usage_error("view: %s is a file of HDF5, which dvi view does not read; dvi run --out "
-                       "FILE.csv and --pvd FILE.pvd write files that it reads",
-                       path);
+  if (ends_with(path, ".csv") || store_is_wanted(path) || strcmp(path, "-") == 0)
+    return take_rows(r, path, source);
   return take_scene(r, path, source, ended);
 }
 
@@ -264,7 +262,7 @@ static const option command_options[] = {
 
 static const command_line command = {
     .name = "view",
-    .synopsis = "PROBLEM|SCENE.yaml|FILE.csv|FILE.pvd --out PAGE.html [OPTIONS]",
+    .synopsis = "PROBLEM|SCENE.yaml|FILE.csv|FILE.h5|FILE.pvd --out PAGE.html [OPTIONS]",
     .operand = "FILE",
     .summary = "Write a page that shows a run in a browser: what moves in space, fields in "
                "colours, and curves over time.\n",

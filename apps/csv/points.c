@@ -141,7 +141,8 @@ int points_read(const char *path, const problem *scene, points *read)
   reader r = {.scene = scene, .q = calloc(n, sizeof(double)), .seen = calloc(n + 1, sizeof(bool))};
   const bool good = r.q != NULL && r.seen != NULL;
   if (!good) complain("out of memory");
-  const int code = good && rows_open(&r.file, path) ? points_read_all(&r, read) : FAILED;
+  int code = good && rows_open(&r.file, path) ? rows_of_run("path", &r.file) : FAILED;
+  if (code == DONE) code = points_read_all(&r, read);
   rows_close(&r.file);
   free(r.seen);
   free(r.coordinate);

@@ -6,7 +6,8 @@
 
 #include "cli/command.h"
 
-enum { LINE_START = 256 };
+/* Bytes of a line at first, and of a number in 17 digits with its comma, at most. */
+enum { LINE_START = 256, NUMBER_SIZE = 32 };
 
 static bool refuse_unreadable(const char *path)
 {
@@ -16,29 +17,40 @@ static bool refuse_unreadable(const char *path)
 
 bool rows_open(row_file *file, const char *path)
 {
-  const char *dot = strrchr(path, '.');
-  *file = (row_file){.path = path};
-  if (dot != NULL && strcmp(dot, ".h5") == 0) {
-    complain(
-        "'%s' is a file of HDF5, and CSV is read here; dvi.read of the Python package reads it",
-        path);
-    return false;
-  }
+  *file = (row_file){.path = path, .is_hdf5 = store_is_wanted(path)};
+  if (file->is_hdf5) return row_source_open(&file->source, path);
   file->stream = strcmp(path, "-") == 0 ? stdin : fopen(path, "r");
   return file->stream != NULL || refuse_unreadable(path);
 }
 
-bool rows_next(row_file *file)
+int rows_of_run(const char *command, const row_file *file)
+{
+  if (!file->source.content.is_table) return DONE;
+  return usage_error("%s: '%s' is the table of a sweep, and the rows of a run are wanted, which "
+                     "dvi run --out writes",
+                     command, file->path);
+}
+
+/* ---- lines ---- */
+
+/* Make room for a line of so many bytes, and perhaps more. */
+static bool make_room(row_file *file, size_t wanted)
+{
+  if (wanted <= file->size) return true;
+  size_t size = file->size > 0 ? 2 * file->size : LINE_START;
+  while (size < wanted) size *= 2;
+  char *line = realloc(file->line, size);
+  if (line == NULL) return false;
+  file->line = line;
+  file->size = size;
+  return true;
+}
+
+static bool read_line(row_file *file)
 {
   size_t length = 0;
   while (true) {
-    if (length + 1 >= file->size) {
-      const size_t size = file->size > 0 ? 2 * file->size : LINE_START;
-      char *line = realloc(file->line, size);
-      if (line == NULL) return false;
-      file->line = line;
-      file->size = size;
-    }
+    if (!make_room(file, length + 2)) return false;
     if (fgets(file->line + length, (int)(file->size - length), file->stream) == NULL) break;
     length += strlen(file->line + length);
     if (length > 0 && file->line[length - 1] == '\n') break; /* a NUL makes a line look empty */
@@ -47,10 +59,43 @@ bool rows_next(row_file *file)
   return length > 0;
 }
 
+/* Spell a row, or without numbers the names of the columns, as dvi run does in CSV. */
+static bool spell_line(row_file *file, const double *number)
+{
+  const hdf5_content *content = &file->source.content;
+  size_t length = 0;
+  for (int k = 0; k < content->columns; k++) {
+    const char *name = number == NULL ? content->column[k] : "";
+    if (!make_room(file, length + strlen(name) + NUMBER_SIZE)) return false;
+    char *at = file->line + length;
+    const size_t room = file->size - length;
+    const char *comma = k > 0 ? "," : "";
+    length += (size_t)(number == NULL ? snprintf(at, room, "%s%s", comma, name)
+                                      : snprintf(at, room, "%s%.17g", comma, number[k]));
+  }
+  return true;
+}
+
+const double *rows_numbers(row_file *file)
+{
+  file->row++;
+  return row_source_next(&file->source);
+}
+
+bool rows_next(row_file *file)
+{
+  if (!file->is_hdf5) return read_line(file);
+  if (file->row == 0) return ++file->row, spell_line(file, NULL);
+  const double *number = rows_numbers(file);
+  return number != NULL && spell_line(file, number);
+}
+
 bool rows_complete(const row_file *file)
 {
-  if (ferror(file->stream)) return refuse_unreadable(file->path);
-  if (feof(file->stream)) return true;
+  const row_source *source = &file->source;
+  if (file->is_hdf5 && row_source_failed(source, file->path)) return false;
+  if (!file->is_hdf5 && ferror(file->stream)) return refuse_unreadable(file->path);
+  if (file->is_hdf5 ? source->next == source->content.rows : feof(file->stream)) return true;
   complain("out of memory");
   return false;
 }
@@ -58,6 +103,7 @@ bool rows_complete(const row_file *file)
 void rows_close(row_file *file)
 {
   if (file->stream != NULL && file->stream != stdin) (void)fclose(file->stream);
+  row_source_close(&file->source);
   free(file->line);
   *file = (row_file){0};
 }

@@ -1,6 +1,7 @@
 #include "csv/series.h"
 
 #include <ctype.h>
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -107,6 +108,8 @@ static int find_columns(const char *command, row_file *file, series_table *table
 static bool series_grow(series_table *table)
 {
   if (table->rows < table->capacity) return true;
+  if (table->capacity > INT_MAX / 2)
+    return complain("%d rows are too many", table->rows + 1), false;
   const int capacity = table->capacity > 0 ? 2 * table->capacity : ROWS_FIRST;
   for (int k = 0; k < table->columns; k++) {
     double *grown = realloc(table->column[k].value, (size_t)capacity * sizeof *grown);
@@ -134,17 +137,36 @@ static void read_row(const char *text, series_table *table)
   table->rows++;
 }
 
+/* Take a row of numbers. Infinite ones are none, as in CSV. */
+static void take_row(const double *number, series_table *table)
+{
+  for (int k = 0; k < table->columns; k++) {
+    const double value = number[table->column[k].field];
+    table->column[k].value[table->rows] = isfinite(value) ? value : (double)NAN;
+  }
+  table->rows++;
+}
+
+static int read_rows(row_file *file, series_table *table)
+{
+  const double *number = NULL;
+  while (file->is_hdf5 ? (number = rows_numbers(file)) != NULL : rows_next(file)) {
+    if (!series_grow(table)) return FAILED;
+    if (number != NULL)
+      take_row(number, table);
+    else
+      read_row(file->line, table);
+  }
+  return rows_complete(file) ? DONE : FAILED;
+}
+
 int series_read(const char *command, const char *path, series_table *table)
 {
   row_file file;
-  int code = rows_open(&file, path) ? find_columns(command, &file, table) : FAILED;
-  while (code == DONE && rows_next(&file)) {
-    if (series_grow(table))
-      read_row(file.line, table);
-    else
-      code = FAILED;
-  }
-  if (code == DONE && !rows_complete(&file)) code = FAILED;
+  int code = rows_open(&file, path) ? DONE : FAILED;
+  if (code == DONE && table->of_run) code = rows_of_run(command, &file);
+  if (code == DONE) code = find_columns(command, &file, table);
+  if (code == DONE) code = read_rows(&file, table);
   rows_close(&file);
   return code;
 }

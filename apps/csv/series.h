@@ -1,4 +1,4 @@
-/** Columns of numbers of a CSV file with a header. */
+/** Columns of numbers of a CSV file with a header, or of a file of HDF5. */
 #ifndef SERIES_H
 #define SERIES_H
 #include "csv/rows.h"
@@ -12,6 +12,7 @@ typedef struct series_column {
 
 /** The columns that are wanted, and their numbers. All zero is none. */
 typedef struct series_table {
+  bool of_run; /**< the rows of a run are wanted: the table of a sweep is refused */
   int columns, rows, capacity;
   series_column *column; /**< [columns] */
 } series_table;

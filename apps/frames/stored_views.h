@@ -5,7 +5,7 @@
 #include <stdbool.h>
 
 #include "picture/vtu.h"
-#include "store/store.h"
+#include "module/store.h"
 
 /** The file. All zero before the first views. */
 typedef struct stored_views {

@@ -126,6 +126,36 @@ hid_t h5_open(const char *path)
   return file;
 }
 
+/* Tell how many bytes a file has. */
+static bool measure(const char *path, off_t *size)
+{
+  struct stat now;
+  const int descriptor = open(path, O_RDONLY | O_CLOEXEC);
+  const bool good = descriptor >= 0 && fstat(descriptor, &now) == 0;
+  if (!good) (void)h5_refuse("%s", strerror(errno));
+  if (descriptor >= 0) (void)close(descriptor);
+  if (good) *size = now.st_size;
+  return good;
+}
+
+hid_t h5_open_to_read(const char *path)
+{
+  off_t size;
+  haddr_t end;
+  quieten();
+  if (!measure(path, &size)) return H5I_INVALID_HID;
+  hid_t file = H5Fis_hdf5(path) > 0 ? H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT) : H5I_INVALID_HID;
+  if (file < 0) refuse_to_open(path);
+  if (file < 0) file = H5Fopen(path, H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, H5P_DEFAULT);
+  /* The library gives zeros for what lies behind the end of a file that was being written. */
+  if (file >= 0 && (H5Fget_eoa(file, &end) < 0 || end > (haddr_t)size)) {
+    (void)h5_refuse("it is cut short");
+    (void)H5Fclose(file);
+    file = H5I_INVALID_HID;
+  }
+  return file;
+}
+
 bool h5_start(hid_t file)
 {
   return (H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0 && H5Fstart_swmr_write(file) >= 0) ||

@@ -21,6 +21,9 @@ hid_t h5_create(const char *path);
 /** Open such a file to write, even if its last writer was killed. */
 hid_t h5_open(const char *path);
 
+/** Open a file to read. It may be one that is being written, or whose writer was killed. */
+hid_t h5_open_to_read(const char *path);
+
 /** Let readers in. All datasets exist by now, and no attribute is open. */
 bool h5_start(hid_t file);
 

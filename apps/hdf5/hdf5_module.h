@@ -1,4 +1,4 @@
-/** The module dvi_hdf5, which writes files of HDF5.
+/** The module dvi_hdf5, which writes and reads files of HDF5.
  *
  *  The command loads it when a file of HDF5 is named: libhdf5 brings so many libraries along that a
  *  command linked to it would take three times as long to start. Functions that fail return NULL or
@@ -63,6 +63,17 @@ typedef struct hdf5_field {
 /** A file with the group VTKHDF, an unstructured grid with fields that change. */
 typedef struct hdf5_frames hdf5_frames;
 
+/** A file of rows or of a table, to be read. */
+typedef struct hdf5_source hdf5_source;
+
+/** What such a file holds. */
+typedef struct hdf5_content {
+  bool is_table; /**< of a sweep, and no rows of a run */
+  int64_t rows;
+  int columns;
+  const char *const *column; /**< [columns] names of the columns of numbers, until it is closed */
+} hdf5_content;
+
 /** The functions of the module. */
 typedef struct hdf5_module {
   /** Return why the last function failed, half a sentence. */
@@ -91,6 +102,16 @@ typedef struct hdf5_module {
    * group `text`. */
   bool (*write_table)(const char *path, const hdf5_head *head, int64_t rows, const double *number,
                       const hdf5_texts *texts);
+
+  /** Open a file of rows or a table to read. Its run may go on, or have been killed: then these are
+   * the rows that were flushed. */
+  hdf5_source *(*open_source)(const char *path, hdf5_content *content);
+
+  /** Read rows [count*columns] from `first` on. */
+  bool (*read_rows)(hdf5_source *source, int64_t first, int64_t count, double *number);
+
+  /** Close the file. The pointer becomes NULL. */
+  void (*close_source)(hdf5_source **source);
 
   /** Create a file for fields on a grid, of which nothing is written yet. */
   hdf5_frames *(*create_frames)(const char *path, const hdf5_head *head, const hdf5_grid *grid,

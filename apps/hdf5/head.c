@@ -23,11 +23,9 @@ bool head_write_columns(hid_t set, const hdf5_head *head)
   return h5_put_texts(set, columns_name, head->columns, head->column);
 }
 
-/* ---- comparison ---- */
+/* ---- reading ---- */
 
-/* Read the texts [count] of an attribute. Returns false if it is not there, or has other ones than
- * texts, or another number of them. The texts are H5free_memory's. */
-static bool read_texts(hid_t place, const char *name, int count, char **text)
+bool head_read_texts(hid_t place, const char *name, int count, char **text)
 {
   const hid_t attribute = H5Aexists(place, name) > 0 ? H5Aopen(place, name, H5P_DEFAULT) : -1;
   if (attribute < 0) return false;
@@ -40,10 +38,36 @@ static bool read_texts(hid_t place, const char *name, int count, char **text)
   return good;
 }
 
+int head_find_layout(hid_t file, const char *const *layout)
+{
+  char *found = NULL;
+  int at = 0;
+  if (!head_read_texts(file, layout_name, 1, &found) || found == NULL) {
+    (void)h5_refuse("dvi has not written it");
+    return -1;
+  }
+  while (layout[at] != NULL && strcmp(found, layout[at]) != 0) at++;
+  if (layout[at] == NULL) {
+    (void)h5_refuse("its layout is '%.*s', and this dvi knows '%s'", SHOWN, found, layout[0]);
+    at = -1;
+  }
+  (void)H5free_memory(found);
+  return at;
+}
+
+bool head_read_columns(hid_t set, int count, char **name)
+{
+  bool good = head_read_texts(set, columns_name, count, name);
+  for (int i = 0; i < count && good; i++) good = name[i] != NULL;
+  return good || h5_refuse("its columns have no names");
+}
+
+/* ---- comparison ---- */
+
 static bool text_is_same(hid_t file, const char *name, const char *text)
 {
   char *found = NULL;
-  if (!read_texts(file, name, 1, &found) || found == NULL)
+  if (!head_read_texts(file, name, 1, &found) || found == NULL)
     return h5_refuse("it has no attribute '%s'", name);
   const bool same = strcmp(found, text) == 0;
   if (!same && strlen(found) < SHOWN && strlen(text) < SHOWN)
@@ -67,7 +91,7 @@ static bool number_is_same(hid_t file, const char *name, double number)
 static bool columns_are_same(hid_t set, const hdf5_head *head)
 {
   char **found = H5allocate_memory((size_t)head->columns * sizeof *found, true);
-  bool same = found != NULL && read_texts(set, columns_name, head->columns, found);
+  bool same = found != NULL && head_read_texts(set, columns_name, head->columns, found);
   for (int i = 0; i < head->columns && found != NULL; i++) {
     same = same && found[i] != NULL && strcmp(found[i], head->column[i]) == 0;
     (void)H5free_memory(found[i]);

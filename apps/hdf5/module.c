@@ -1,5 +1,6 @@
 #include "hdf5/h5.h"
 #include "hdf5/hdf5_module.h"
+#include "hdf5/read_rows.h"
 #include "hdf5/stored_frames.h"
 #include "hdf5/stored_rows.h"
 
@@ -11,6 +12,9 @@ const hdf5_module dvi_hdf5 = {
     .flush_rows = stored_rows_flush,
     .close_rows = stored_rows_close,
     .write_table = stored_table,
+    .open_source = read_rows_open,
+    .read_rows = read_rows_read,
+    .close_source = read_rows_close,
     .create_frames = stored_frames_create,
     .add_frame = stored_frames_add,
     .close_frames = stored_frames_close,

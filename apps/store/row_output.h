@@ -3,7 +3,7 @@
 #define ROW_OUTPUT_H
 #include <stdbool.h>
 
-#include "store/store.h"
+#include "module/store.h"
 
 /** Where rows go. All zero is nowhere. */
 typedef struct row_output {

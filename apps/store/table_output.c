@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "cli/command.h"
-#include "store/store.h"
+#include "module/store.h"
 
 /* The cells of all lines, the header first. */
 typedef struct cell_table {

@@ -161,7 +161,8 @@ static int read_row(reader *r, fit_data *read)
 int fit_data_read(const char *path, const problem *scene, const char *columns, fit_data *read)
 {
   reader r = {.scene = scene, .columns = columns};
-  int code = rows_open(&r.file, path) ? read_header(&r, read) : FAILED;
+  int code = rows_open(&r.file, path) ? rows_of_run("fit", &r.file) : FAILED;
+  if (code == DONE) code = read_header(&r, read);
   while (code == DONE && rows_next(&r.file)) code = read_row(&r, read);
   if (code == DONE && !rows_complete(&r.file)) code = FAILED;
   if (code == DONE && read->rows == 0) code = usage_error("fit: '%s' has no rows", path);

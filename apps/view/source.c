@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "cli/command.h"
+#include "module/store.h"
 #include "view/factors.h"
 #include "view/links.h"
 #include "view/moments.h"
@@ -32,10 +33,11 @@ static int find_column(const series_table *table, const char *name, int from)
   return -1;
 }
 
-/* Return whether a file ends within a line, as one that was cut short does. */
+/* Return whether a file of lines ends within one, as one that was cut short does. */
 static bool is_cut_short(const char *path)
 {
-  FILE *stream = strcmp(path, "-") != 0 ? fopen(path, "rb") : NULL;
+  const bool has_lines = strcmp(path, "-") != 0 && !store_is_wanted(path);
+  FILE *stream = has_lines ? fopen(path, "rb") : NULL;
   const bool cut = stream != NULL && fseek(stream, -1, SEEK_END) == 0 && fgetc(stream) != '\n';
   if (stream != NULL) (void)fclose(stream);
   return cut;
@@ -43,6 +45,7 @@ static bool is_cut_short(const char *path)
 
 static int read_table(view_source *s, const char *path)
 {
+  s->table.of_run = true;
   const int code = series_read("view", path, &s->table);
   if (code != DONE) return code;
   const int time = find_column(&s->table, "t", 0);

@@ -87,7 +87,9 @@ BEGIN {
   sees["study"] = "core"
   # The command includes public headers and those of the problems, too.
   uses["cli"] = ""
-  uses["csv"] = "cli"
+  uses["hdf5"] = ""
+  uses["module"] = "cli hdf5"
+  uses["csv"] = "cli hdf5 module"
   uses["load"] = "cli csv"
   uses["plot"] = "cli csv"
   uses["sweep"] = "cli csv load"
@@ -96,13 +98,12 @@ BEGIN {
   uses["picture"] = "cli plot"
   uses["study"] = "cli csv plot"
   uses["mechanics"] = uses["study"] " study load"
-  uses["hdf5"] = ""
-  uses["store"] = "cli csv load hdf5"
+  uses["store"] = "cli csv load hdf5 module"
   uses["bench"] = uses["mechanics"] " mechanics"
-  uses["frames"] = "cli plot picture hdf5 store"
+  uses["frames"] = "cli plot picture hdf5 module"
   uses["watch"] = uses["bench"] " picture hdf5 store frames"
-  uses["view"] = "cli csv load picture"
-  uses["cmd"] = uses["watch"] " watch bench sweep boundary varied view"
+  uses["view"] = "cli csv load picture module"
+  uses["cmd"] = uses["watch"] " module watch bench sweep boundary varied view"
   uses["main.c"] = "cli"
   # Single headers of other rooms that a room may include.
   also["reference solve/sundials.h"] = 1

@@ -12,7 +12,7 @@ for candidate in python3 /usr/bin/python3; do
 done
 [ -n "$python" ] || { echo 'no python3 has h5py'; exit 77; }
 if ! "$dvi" run kepler --method verlet --h 0.1 --t-end 1 --out probe.h5 2>err; then
-  says err 'has no module to write it.*libhdf5-dev' 'what is missing'
+  says err 'has no module for it.*libhdf5-dev' 'what is missing'
   [ "$failures" -eq 0 ] && exit 77
   finish
 fi
@@ -103,6 +103,7 @@ refused_to_append 'other columns' 'it has other columns' kepler $same --h 0.0156
 cp kept.h5 part.h5
 expect 0 'the start of a scene' run one.yaml --out one.h5 --checkpoint one.state
 sed 's/title: one/title: two/' one.yaml >two.yaml && mv two.yaml one.yaml
+expect 0 'the same as CSV' run one.yaml --out one.csv
 expect 1 'another scene' run one.yaml --t-end 2 --out one.h5 --resume one.state
 says err "cannot append to 'one.h5': its scene is " 'it says so'
 expect 1 'a gap' $kepler --t-end 9 --out rest.h5 --resume part.state
@@ -123,13 +124,70 @@ says err "^dvi: cannot write 'full.h5': File too large$" 'a full disk'
 [ "$(wc -l <err)" -eq 1 ] || fail 'one sentence about a full disk'
 no_trace 'failures'
 
-expect 1 'no CSV' spectrum whole.h5
-says err "'whole.h5' is a file of HDF5, and CSV is read here" 'no CSV'
+# Commands that read CSV read these files, and give the same.
+for kind in csv h5; do
+  expect 0 "a spectrum of $kind" spectrum rows.$kind --columns x,energy --csv lines.$kind
+  expect 0 "a plot of $kind" plot rows.$kind --axes x:y,t:x --title rows --out rows_$kind.svg
+  expect 0 "a page of $kind" view rows.$kind --title rows --out page_$kind.html
+  expect 0 "a page of $kind with its scene" view rows.$kind --scene kepler --title rows \
+    --out scene_$kind.html
+  expect 0 "a guess of $kind" path kepler --method galerkin:degree=2 --ends fixed --steps 20 \
+    --t-end 1.5 --guess rows.$kind --out path_$kind.csv
+  expect 0 "a fit to $kind" fit one.yaml --to one.$kind --vary x --columns x,p_x --out fit_$kind.csv
+  sed -i '/^"made":/d' page_$kind.html scene_$kind.html
+done
+same lines.csv lines.h5 'a spectrum'
+same rows_csv.svg rows_h5.svg 'a plot'
+same page_csv.html page_h5.html 'a page'
+same scene_csv.html scene_h5.html 'a page with its scene'
+same path_csv.csv path_h5.csv 'a guess'
+same fit_csv.csv fit_h5.csv 'a fit'
+expect 0 'a killed run is read' spectrum dead.h5 --columns x --count 1
+says out '^Spectrum of dead.h5: ' 'a killed run'
+expect 2 'no such column' plot rows.h5 --axes x:enrgy --out x.svg
+says err "^dvi: plot: 'rows.h5' has no column 'enrgy' (did you mean 'energy'?)$" 'no such column'
+# not_read FILE WORDS: require that a file is refused by a sentence.
+not_read() {
+  expect 1 "$1" spectrum "$1"
+  says err "^dvi: cannot read '$1': $2$" "$1"
+  [ "$(wc -l <err)" -eq 1 ] || fail "$1: one sentence"
+}
+for size in 100 3000 9000; do
+  head -c $size rows.h5 >cut.h5
+  not_read cut.h5 'it is cut short'
+done
+head -c -1 dead.h5 >cut.h5
+not_read cut.h5 'it is cut short'
+cp rows.csv text.h5
+not_read text.h5 'it is no file of HDF5'
+not_read nowhere.h5 'No such file or directory'
+"$python" - <<END
+import h5py
+for name, facts in ("other", {}), ("newer", {"layout": "dvi rows 9"}), \
+        ("nameless", {"layout": "dvi rows 1"}):
+    with h5py.File(name + ".h5", "w") as file:
+        file["rows"] = [[0.0, 1.0], [1.0, 2.0]]
+        file.attrs.update(facts)
+END
+not_read other.h5 'dvi has not written it'
+not_read newer.h5 "its layout is 'dvi rows 9', and this dvi knows 'dvi rows 1'"
+not_read nameless.h5 'its columns have no names'
 
 # A sweep is a table, and frames of fields are those of .vtu files.
 sweep='sweep kepler --method verlet --h 0.1 --t-end 1 --set e=0:0.5:3'
 expect 0 'a sweep' $sweep --out table.h5
 expect 0 'the same as CSV' $sweep --out table.csv
+for kind in csv h5; do
+  expect 0 "a plot of a sweep" plot table.$kind --axes e:energy --title e --out table_$kind.svg
+done
+same table_csv.svg table_h5.svg 'a plot of a sweep'
+way='--method galerkin:degree=2 --ends fixed --steps 9 --t-end 1'
+for reader in 'view table.h5 --out x.html' 'spectrum table.h5' \
+  'fit one.yaml --to table.h5 --vary x' "path kepler $way --guess table.h5"; do
+  expect 2 "$reader" $reader
+  says err "^dvi: ${reader%% *}: 'table.h5' is the table of a sweep, and the rows of a run are" \
+    "$reader"
+done
 for scene in ring block; do
   expect 0 "frames of a $scene" run $scene.yaml --pvd $scene.vtkhdf --out $scene.h5
   expect 0 "a list of a $scene" run $scene.yaml --pvd $scene.pvd --out $scene.csv

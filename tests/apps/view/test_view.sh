@@ -127,8 +127,8 @@ says err 'nowhere.csv' 'no file'
 expect 1 'no list' view nowhere.pvd --out x.html
 says err "cannot read 'nowhere.pvd'" 'no list'
 expect 1 'no grid' view nowhere.vtu --out x.html
-expect 2 'an unknown kind' view rods.h5 --out x.html
-says err 'rods.h5 is a file of HDF5' 'an unknown kind'
+expect 1 'no file of HDF5' view rods.h5 --out x.html
+says err "'rods.h5'" 'no file of HDF5'
 expect 2 'rows and a method' view rods.csv --method verlet --out x.html
 says err '\-\-method is for scenes' 'rows and a method'
 expect 2 'a setting of nothing' view rods.csv --set k=2 --out x.html

@@ -215,9 +215,19 @@ START_TEST(a_step_beyond_the_bound_is_refused)
        9,
        {1, 0, 0, 0, 1, 0, 0, 0, 1},
        {.6, 0, -.8},
-       "largest moment"},
-      {{.kind = DVI_S2, .mass = 2}, 3, {0, 0, 1}, {.6, -.8, 0}, "direction"},
-      {{.kind = DVI_U1, .mass = 2}, 2, {0, 1}, {1}, "angle"},
+       "the moment of inertia about the axis that it turns about, at most 2"},
+      {{.kind = DVI_S2, .mass = 2},
+       3,
+       {0, 0, 1},
+       {.6, -.8, 0},
+       "direction at coordinates 0 to 2 turns too far: h |p| is 2.0002, and a step can be solved "
+       "up to the moment of inertia 2"},
+      {{.kind = DVI_U1, .mass = 2},
+       2,
+       {0, 1},
+       {1},
+       "angle at coordinates 0 to 1 turns too far: h |p| is 2.0002, and a step can be solved up to "
+       "the moment of inertia 2"},
   };
   const char *method = solves[_i % 2];
   body top = {.name = "top"};
@@ -231,7 +241,6 @@ START_TEST(a_step_beyond_the_bound_is_refused)
   dvi_integrator *integrator = body_integrator(&top, method);
   ck_assert_int_eq(dvi_integrator_step(integrator, 1.0001), DVI_STEP_TOO_LARGE);
   check_words(cases[_i / 2].words);
-  check_words("up to 2,");
   ck_assert_int_eq(
       memcmp(dvi_integrator_q(integrator), top.q, (size_t)cases[_i / 2].nq * sizeof(double)), 0);
   ck_assert_int_eq(dvi_integrator_step(integrator, .9999), DVI_OK);

@@ -121,6 +121,8 @@ START_TEST(a_slot_that_turns_too_far_is_named)
   ck_assert_int_eq(dvi_integrator_step(all, .79), DVI_STEP_TOO_LARGE);
   ck_assert_msg(strstr(dvi_last_error(), "direction at coordinates 30 to 32") != NULL, "%s",
                 dvi_last_error());
+  ck_assert_msg(strstr(dvi_last_error(), "solved up to the moment of inertia ") != NULL, "%s",
+                dvi_last_error());
   ck_assert_mem_eq(before, dvi_integrator_q(all), 33 * sizeof(double));
   dvi_integrator_destroy(&all);
   dvi_system_destroy(&many);

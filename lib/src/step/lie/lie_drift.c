@@ -82,13 +82,12 @@ static dvi_status lie_drift_too_large(const dvi__mass_block *own, double impulse
   const char *what = slot->kind == DVI__ROTATION ? "body"
                      : slot->kind == DVI__SPHERE ? "direction"
                                                  : "angle";
-  return dvi__fail(DVI_STEP_TOO_LARGE,
-                   "the %s at coordinates %d to %d turns too far: h |p| is %.6g, and a step can be "
-                   "solved up to %.6g, its %smoment of inertia%s",
-                   what, slot->q, slot->q + dvi__chart_stored(slot->kind) - 1, impulse, most,
-                   slot->kind == DVI__ROTATION ? "largest " : "",
-                   slot->kind == DVI__ROTATION ? ", about another axis only up to that of this axis"
-                                               : "");
+  return dvi__fail(
+      DVI_STEP_TOO_LARGE,
+      "the %s at coordinates %d to %d turns too far: h |p| is %.6g, and a step can be "
+      "solved up to the moment of inertia %s%.6g",
+      what, slot->q, slot->q + dvi__chart_stored(slot->kind) - 1, impulse,
+      slot->kind == DVI__ROTATION ? "about the axis that it turns about, at most " : "", most);
 }
 
 static void drift_line(const dvi__mass_block *own, double h, const dvi__phase *state,

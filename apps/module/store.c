@@ -1,4 +1,4 @@
-#include "store/store.h"
+#include "module/store.h"
 
 #include <dlfcn.h>
 #include <stddef.h>
@@ -24,8 +24,8 @@ const hdf5_module *store_module(const char *path)
   void *library = dlopen(module_name, RTLD_NOW | RTLD_LOCAL);
   if (library != NULL) module = dlsym(library, symbol_name);
   if (module == NULL)
-    complain("'%s' is a file of HDF5, and this dvi has no module to write it (%s); build dvi where "
-             "libhdf5-dev is installed, or write CSV",
+    complain("'%s' is a file of HDF5, and this dvi has no module for it (%s); build dvi where "
+             "libhdf5-dev is installed, or take CSV",
              path, dlerror());
   return module;
 }

@@ -1,4 +1,4 @@
-/** Files of HDF5, which the module dvi_hdf5 writes. */
+/** Files of HDF5, which the module dvi_hdf5 writes and reads. */
 #ifndef STORE_H
 #define STORE_H
 #include <stdbool.h>
