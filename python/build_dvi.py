@@ -2,7 +2,8 @@
 
 The public headers are the declarations: the C preprocessor leaves of them what cffi reads. The
 library is found by pkg-config (dvi-scene, dvi-study). DVI_INCLUDE and DVI_LIBRARY name the folders
-of a build that is not installed.
+of a build that is not installed. The module finds the library there at run time, too, or in
+DVI_RUNPATH, or, if that is empty, where the loader looks.
 """
 import os
 import pathlib
@@ -31,44 +32,51 @@ SOURCE = r"""
 #include <signal.h>
 
 static volatile int cancelled;
+static int depth; /* of runs that callbacks of runs begin, all on the main thread */
 
 static void cancel(int number) { (void)number; cancelled = 1; }
 
-typedef void (*handler)(int);
-
-static handler catch_interrupts(void)
+static int catch_interrupts(struct sigaction *before)
 {
-  cancelled = 0;
-  return signal(SIGINT, cancel);
+  struct sigaction during = {.sa_handler = cancel};
+  (void)sigemptyset(&during.sa_mask);
+  if (depth++ == 0) cancelled = 0;
+  return sigaction(SIGINT, &during, before) == 0;
 }
 
-static int release_interrupts(handler before)
+static int release_interrupts(int is_caught, const struct sigaction *before)
 {
-  if (before != SIG_ERR) (void)signal(SIGINT, before);
+  if (is_caught) (void)sigaction(SIGINT, before, NULL);
+  depth--;
   return cancelled;
 }
 
-/* Record a run that Ctrl-C ends after its step. */
+/* Record a run, which Ctrl-C ends after its step if *interrupted is not 0. Then it tells whether it
+ * did. That is for the main thread. */
 static dvi_status interruptible_record(dvi_integrator *integrator, const dvi_run_options *run,
                                        const dvi_record_options *options,
                                        dvi_recording **recording, int *interrupted)
 {
-  const handler before = catch_interrupts();
+  if (!*interrupted) return dvi_record(integrator, run, options, recording);
+  struct sigaction before;
+  const int is_caught = catch_interrupts(&before);
   dvi_run_options own = *run;
   own.cancel = &cancelled;
   const dvi_status status = dvi_record(integrator, &own, options, recording);
-  *interrupted = release_interrupts(before);
+  *interrupted = release_interrupts(is_caught, &before);
   return status;
 }
 
 /* Do the same for a sweep. */
 static dvi_status interruptible_sweep(const dvi_study_sweep_options *options, int *interrupted)
 {
-  const handler before = catch_interrupts();
+  if (!*interrupted) return dvi_study_sweep(options, NULL);
+  struct sigaction before;
+  const int is_caught = catch_interrupts(&before);
   dvi_study_sweep_options own = *options;
   own.cancel = &cancelled;
   const dvi_status status = dvi_study_sweep(&own, NULL);
-  *interrupted = release_interrupts(before);
+  *interrupted = release_interrupts(is_caught, &before);
   return status;
 }
 
@@ -76,11 +84,13 @@ static dvi_status interruptible_sweep(const dvi_study_sweep_options *options, in
 static dvi_status interruptible_march(dvi_march *march, const dvi_march_record_options *options,
                                       dvi_recording **recording, int *interrupted)
 {
-  const handler before = catch_interrupts();
+  if (!*interrupted) return dvi_march_record(march, options, recording);
+  struct sigaction before;
+  const int is_caught = catch_interrupts(&before);
   dvi_march_record_options own = *options;
   own.cancel = &cancelled;
   const dvi_status status = dvi_march_record(march, &own, recording);
-  *interrupted = release_interrupts(before);
+  *interrupted = release_interrupts(is_caught, &before);
   return status;
 }
 """
@@ -122,11 +132,12 @@ def declarations(include):
 
 include = folders("DVI_INCLUDE", "--cflags-only-I") or ["/usr/local/include", "/usr/include"]
 library = folders("DVI_LIBRARY", "--libs-only-L")
+runpath = os.environ["DVI_RUNPATH"].split() if "DVI_RUNPATH" in os.environ else library
 ffibuilder = cffi.FFI()
 ffibuilder.cdef(declarations(include))
 ffibuilder.cdef(CDEF)
 ffibuilder.set_source("dvi._dvi", SOURCE, include_dirs=include, library_dirs=library,
-                      runtime_library_dirs=library, libraries=["dvi-study", "dvi-scene", "dvi"])
+                      runtime_library_dirs=runpath, libraries=["dvi-study", "dvi-scene", "dvi"])
 
 if __name__ == "__main__":
     ffibuilder.compile(verbose=False)

@@ -6,4 +6,6 @@ from setuptools import setup
 
 header = pathlib.Path(__file__).resolve().parent.parent / "lib/include/dvi/version.h"
 parts = re.findall(r"#define DVI_VERSION_(?:MAJOR|MINOR|PATCH) (\d+)", header.read_text())
-setup(version=".".join(parts), cffi_modules=["build_dvi.py:ffibuilder"])
+# An object of the last build may have been built against another libdvi.
+setup(version=".".join(parts), cffi_modules=["build_dvi.py:ffibuilder"],
+      options={"build_ext": {"force": True}})

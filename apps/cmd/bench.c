@@ -1,6 +1,7 @@
 /* dvi bench, which measures speed against error, all in one run, or the cost of a step against
  * size. */
 #include <dvi/scene.h>
+#include <dvi/study.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -159,7 +160,7 @@ static int judge_and_measure(bench *b)
 {
   const double asked = work_smallest_asked(&b->request->outputs.asked);
   const judge_request judge = {.kind = b->request->judge,
-                               .wanted = isfinite(asked) ? asked / STUDY_FLOOR_MARGIN
+                               .wanted = isfinite(asked) ? asked / DVI_STUDY_FLOOR_MARGIN
                                                          : error_of_judge,
                                .progress = &b->progress};
   progress_start(&b->progress, true);

@@ -46,7 +46,7 @@ typedef struct order_study {
   const problem *scene;
   judgement judge;
   double judged_at; /* time that the judge was asked for, or NaN before */
-  levels_choice choice;
+  dvi_study_levels choice;
   progress_line progress;
   result_table *rows;
 } order_study;
@@ -76,13 +76,13 @@ static dvi_status run_levels(order_study *ask, const study_subject *of, bool mus
                              order_result *to)
 {
   const order_request *request = ask->request;
-  const levels_request wanted = {.length = isnan(request->h) ? 0.0 : request->h,
-                                 .ratio = isnan(request->ratio) ? 0.0 : request->ratio,
-                                 .count = level_count(request, of->order)};
+  const dvi_study_search wanted = {.length = isnan(request->h) ? 0.0 : request->h,
+                                   .ratio = isnan(request->ratio) ? 0.0 : request->ratio,
+                                   .levels = level_count(request, of->order)};
   dvi_status status = levels_choose(of, &wanted, &ask->choice);
   const bool there = status == DVI_OK && ask->choice.parts[0] > 0;
   if (!there || (must_fit && !ask->choice.room)) return status;
-  status = order_measure(of, &ask->choice, wanted.count, ask->rows, to);
+  status = order_measure(of, &ask->choice, wanted.levels, ask->rows, to);
   return status == DVI_OK && request->levels == 0 ? order_extend(of, ask->rows, to) : status;
 }
 
@@ -160,10 +160,10 @@ static int study_method(order_study *ask, const char *method, order_result *resu
 static int order_check_step(const order_request *request, const problem *scene)
 {
   const double t_end = study_end(request, scene);
-  if (!(fabs(t_end) / request->h > FIRST_PARTS_MAX)) return DONE;
+  if (!(fabs(t_end) / request->h > DVI_STUDY_FIRST_PARTS_MAX)) return DONE;
   return usage_error(
       "order: --h %g is too small: %g steps to t = %g, %d are possible at the first level",
-      request->h, fabs(t_end) / request->h, t_end, (int)FIRST_PARTS_MAX);
+      request->h, fabs(t_end) / request->h, t_end, (int)DVI_STUDY_FIRST_PARTS_MAX);
 }
 
 static bool order_write_csv(const result_table *rows, const char *path)
@@ -237,7 +237,7 @@ static int order_check_methods(const order_request *request, const problem *scen
 
 static int order_check_request(order_request *request, const char *name)
 {
-  const int most = STUDY_LEVELS_MAX;
+  const int most = DVI_STUDY_LEVELS_MAX;
   if (request->levels > most)
     return usage_error("order: --levels %ld is too many, %d are possible", request->levels, most);
   if (request->t_end == 0.0) return usage_error("order: --t-end 0 leaves nothing to do");

@@ -67,7 +67,7 @@ static price price_at(const work *w, int first, double asked)
  * little. */
 static bool can_be_judged(const work *w, double asked)
 {
-  return asked >= STUDY_FLOOR_MARGIN * w->judge_error;
+  return asked >= DVI_STUDY_FLOOR_MARGIN * w->judge_error;
 }
 
 static double fastest_seconds(const work *w, double asked)

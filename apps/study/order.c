@@ -79,7 +79,7 @@ static void fit_levels(order_result *result)
                                   result->ceiling, &result->fit);
 }
 
-dvi_status order_measure(const study_subject *subject, const levels_choice *choice, int levels,
+dvi_status order_measure(const study_subject *subject, const dvi_study_levels *choice, int levels,
                          result_table *rows, order_result *result)
 {
   (void)snprintf(result->name, sizeof result->name, "%s", subject->name);
@@ -144,7 +144,7 @@ static bool is_claimed(const order_result *result, double slope)
 bool order_may_settle(const order_result *result)
 {
   const int last = result->levels - 1;
-  if (result->settled || result->chooses || last < 1 || result->levels >= STUDY_LEVELS_MAX)
+  if (result->settled || result->chooses || last < 1 || result->levels >= DVI_STUDY_LEVELS_MAX)
     return false;
   const double off = fabs(order_local_slope(result, last) - result->claimed);
   const double next = result->error[last] * pow(last_ratio(result), -result->claimed);

@@ -37,8 +37,8 @@ typedef struct order_result {
   char judge[STUDY_JUDGE]; /**< description of the judge */
   double judge_error;
   int levels;
-  double length[STUDY_LEVELS_MAX]; /**< length without sign */
-  double error[STUDY_LEVELS_MAX];
+  double length[DVI_STUDY_LEVELS_MAX]; /**< length without sign */
+  double error[DVI_STUDY_LEVELS_MAX];
   double floor, ceiling; /**< errors outside are not fitted */
   dvi_order_fit fit;
   bool settled;       /**< slope is the same all over the fitted levels */
@@ -48,7 +48,7 @@ typedef struct order_result {
 
 /** Run all levels, and fit the order. Each level is a row of the table, whose columns are
  * order_columns. */
-dvi_status order_measure(const study_subject *subject, const levels_choice *choice, int levels,
+dvi_status order_measure(const study_subject *subject, const dvi_study_levels *choice, int levels,
                          result_table *rows, order_result *result);
 
 /** Run up to six further levels by the ratio of the last two, while order_may_settle and a run

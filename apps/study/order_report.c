@@ -66,7 +66,7 @@ static int count_above(const order_result *result, double bound)
 /* Return the cause that hides small errors. */
 static const char *floor_cause(const order_result *result, char *text)
 {
-  const bool of_judge = result->floor <= 1.01 * STUDY_FLOOR_MARGIN * result->judge_error;
+  const bool of_judge = result->floor <= 1.01 * DVI_STUDY_FLOOR_MARGIN * result->judge_error;
   const char *said = order_phrase(result, STUDY_ROUNDOFF, text);
   return of_judge ? "the judge's own error" : said[0] != '\0' ? said : "roundoff";
 }

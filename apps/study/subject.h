@@ -13,9 +13,6 @@
 
 enum { STUDY_FURTHER_MAX = 4, STUDY_COUNTS_MAX = 8, STUDY_NAME = 320, STUDY_JUDGE = 256 };
 
-/** Factor by which an error must exceed disturbances to count. */
-#define STUDY_FLOOR_MARGIN 10.0
-
 /** The result at a level. Members that a subject does not set are 0, or NaN for type double. */
 typedef struct study_level {
   double refinement; /**< requested refinement, a number of parts or a tolerance */

@@ -75,7 +75,7 @@ static double first_error_of(const work *w, const study_subject *subject)
   for (int i = 0; i < w->asked->count; i++) asked = fmax(asked, w->asked->number[i]);
   if (asked == 0.0) return first_error;
   /* Without this bound no level would lie above the floor. */
-  const double judged = STUDY_FLOOR_MARGIN * STUDY_FLOOR_MARGIN * w->judge_error;
+  const double judged = DVI_STUDY_FLOOR_MARGIN * DVI_STUDY_FLOOR_MARGIN * w->judge_error;
   const double near = fmin(first_error, fmax(above_asked * asked, judged) / subject->size);
   return fmax(near, first_error * pow(more_parts, -subject->order));
 }
@@ -145,15 +145,15 @@ dvi_status work_add_levels(work *w, const study_subject *search, const study_sub
                            int levels, bool *lost)
 {
   const bool extend = levels == 0;
-  const levels_request wanted = {.first_error = first_error_of(w, search),
-                                 .count = extend ? LEVELS_DEFAULT : levels};
-  levels_choice choice;
+  const dvi_study_search wanted = {.first_error = first_error_of(w, search),
+                                   .levels = extend ? LEVELS_DEFAULT : levels};
+  dvi_study_levels choice;
   dvi_status status = levels_choose(search, &wanted, &choice);
   *lost = status == DVI_OK && choice.parts[0] == 0;
   if (status != DVI_OK || *lost) return status;
   if (extend) status = add_larger(w, search, subject, choice.parts[0]);
   const int first = w->jobs;
-  for (int k = 0; k < wanted.count && status == DVI_OK; k++)
+  for (int k = 0; k < wanted.levels && status == DVI_OK; k++)
     status = work_add(w, subject, (double)choice.parts[k]);
   return status == DVI_OK && extend ? add_smaller(w, subject, first) : status;
 }

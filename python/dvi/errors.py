@@ -1,11 +1,23 @@
 """Exceptions with the library's sentences."""
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 from dvi._dvi import ffi, lib
+
+if TYPE_CHECKING:
+    from dvi.recording import Run
 
 
 class Error(Exception):
-    """A call of the library failed. `status` is its name, such as "DVI_NOT_CONVERGED"."""
+    """A call of the library failed.
 
-    status = "DVI_SOLVER_FAILED"
+    status  the name of its status, such as "DVI_NOT_CONVERGED"
+    run     the `Run` before the failure, if the call was to return one and there are rows
+    """
+
+    status: str = "DVI_SOLVER_FAILED"
+    run: Run | None = None
 
 
 class NotConverged(Error):
@@ -46,7 +58,7 @@ KINDS = {
 }
 
 
-def error(status, sentence=None):
+def error(status: int, sentence: str | None = None) -> Exception:
     """Return the exception of a status, with a sentence or that of the last failure."""
     name = ffi.string(lib.dvi_status_name(status)).decode()
     if name == "DVI_NO_MEMORY":
@@ -56,7 +68,7 @@ def error(status, sentence=None):
     return made
 
 
-def check(status):
+def check(status: int) -> None:
     """Raise the exception of a status that is not DVI_OK."""
     if status != lib.DVI_OK:
         raise error(status)

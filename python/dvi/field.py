@@ -1,18 +1,26 @@
 """Fields on meshes, as arrays: points and cells, matrices, modes, and marches in time."""
 from __future__ import annotations
 
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
+from numpy.typing import ArrayLike
 
 from dvi._dvi import ffi, lib
-from dvi._library import Owned, array, numbers, text
+from dvi._library import Array, Owned, array, numbers, text
 from dvi.errors import Unsupported, check, error
+from dvi.recording import interrupts
+
+if TYPE_CHECKING:
+    from dvi.scene import Scene
 
 FORMS = {"A": lib.DVI_FORM_A, "E": lib.DVI_FORM_E, "B": lib.DVI_FORM_B}
 PARTS = {"A": lib.DVI_RECORD_A, "E": lib.DVI_RECORD_E, "B": lib.DVI_RECORD_B}
 OPERATORS = {"mass": lib.DVI_FIELD_MASS, "stiffness": lib.DVI_FIELD_STIFFNESS}
 
 
-def _sparse(matrix):
+def _sparse(matrix: Any) -> Any:
     """Return a matrix of scipy with copies of the library's numbers."""
     from scipy import sparse
     entries = lib.dvi_matrix_entries(matrix)
@@ -31,7 +39,7 @@ class Mesh:
     points  [vertices, space], without a copy
     """
 
-    def __init__(self, pointer, owner: Owned):
+    def __init__(self, pointer: Any, owner: Owned) -> None:
         self.pointer, self._owner = pointer, owner
         self.dimension: int = lib.dvi_mesh_dimension(pointer)
         points = ffi.cast("double *", lib.dvi_mesh_points(pointer))
@@ -50,7 +58,7 @@ class Mesh:
         count = self.count(k) * width[0]
         return np.frombuffer(ffi.buffer(given, 4 * count), np.int32).reshape(-1, width[0]).copy()
 
-    def incidence(self, k: int):
+    def incidence(self, k: int) -> Any:
         """Return the incidence of (k+1)-cells and k-cells, a sparse matrix of scipy."""
         matrix = ffi.new("dvi_matrix *")
         check(lib.dvi_mesh_incidence(self.pointer, k, matrix))
@@ -64,7 +72,7 @@ class Mesh:
             raise KeyError(f"the mesh has no part {name!r} of {k}-cells")
         return np.frombuffer(ffi.buffer(cells, 4 * count[0]), np.int32).copy()
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         counts = ", ".join(f"{self.count(k)} {k}-cells" for k in range(self.dimension + 1))
         return f"<Mesh: {counts}>"
 
@@ -72,20 +80,20 @@ class Mesh:
 class Field:
     """The field of a scene. Its unknowns are the values at k-cells that are not fixed."""
 
-    def __init__(self, pointer, mesh: Mesh, owner: Owned):
+    def __init__(self, pointer: Any, mesh: Mesh, owner: Owned) -> None:
         self.pointer, self.mesh, self._owner = pointer, mesh, owner
         self.degree: int = lib.dvi_field_degree(pointer)
         count = ffi.new("int64_t *")
         cells = lib.dvi_field_unknowns(pointer, count)
         self.unknowns = np.frombuffer(ffi.buffer(cells, 4 * count[0]), np.int32).copy()
 
-    def matrix(self, name: str):
+    def matrix(self, name: str) -> Any:
         """Return "mass" or "stiffness", a sparse matrix of scipy by unknowns."""
         matrix = ffi.new("dvi_matrix *")
         check(lib.dvi_field_matrix(self.pointer, OPERATORS[name], matrix))
         return _sparse(matrix)
 
-    def lift(self, q) -> np.ndarray:
+    def lift(self, q: ArrayLike) -> np.ndarray:
         """Return the values at all k-cells [.., cells] of unknowns q [.., unknowns]."""
         q = np.ascontiguousarray(q, dtype=float)
         if q.shape[-1:] != (len(self.unknowns),):
@@ -111,15 +119,15 @@ class Field:
         check(lib.dvi_field_solve(self.pointer, ffi.NULL, numbers(u), ffi.NULL))
         return u
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"<Field: {len(self.unknowns)} unknowns on {self.degree}-cells>"
 
 
 class March:
     """A field of a scene that advances by a method of its own: leapfrog, yee, avi, tents."""
 
-    def __init__(self, scene, method: str | None = None, h: float = 0.0, fraction: float = 0.0,
-                 threads: int = 1):
+    def __init__(self, scene: Scene, method: str | None = None, h: float = 0.0,
+                 fraction: float = 0.0, threads: int = 1) -> None:
         options = ffi.new("dvi_march_options *", {"size": ffi.sizeof("dvi_march_options"),
                                                   "step": h, "fraction": fraction,
                                                   "threads": threads})
@@ -127,7 +135,7 @@ class March:
         options.method = name
         made = ffi.new("dvi_march **")
         check(lib.dvi_scene_march_create(scene.scene, options, made))
-        self._owned = Owned("march", made[0], scene.owned)
+        self._owned = Owned("march", made[0], scene.owned, threads)
         self.pointer, self.scene = made[0], scene
 
     @property
@@ -163,7 +171,8 @@ class March:
             i += 1
         return found
 
-    def record(self, t_end: float, every: float = 0.0, times=None, forms=()) -> dict:
+    def record(self, t_end: float, every: float = 0.0, times: ArrayLike | None = None,
+               forms: Iterable[str] | dict[str, Any] = ()) -> dict[str, Array]:
         """Advance to t_end, and return arrays by name: "t", forms and observables.
 
         every  time between two rows. times  the times of the rows in place of that
@@ -182,7 +191,7 @@ class March:
                 kept.append(ffi.new("int[]", [int(cell) for cell in cells]))
                 options.cell[FORMS[form]] = kept[-1]
                 options.cell_count[FORMS[form]] = len(cells)
-        made, interrupted = ffi.new("dvi_recording **"), ffi.new("int *")
+        made, interrupted = ffi.new("dvi_recording **"), ffi.new("int *", interrupts())
         status = lib.interruptible_march(self.pointer, options, made, interrupted)
         failure = error(status) if status != lib.DVI_OK else None
         rows = self._rows(made[0]) if made[0] != ffi.NULL else None
@@ -193,7 +202,7 @@ class March:
             raise failure
         return rows
 
-    def _rows(self, recording):
+    def _rows(self, recording: Any) -> dict[str, Array]:
         """Return the arrays of a recording, without copies."""
         owner, count = Owned("recording", recording), lib.dvi_recording_rows(recording)
         found, width, i = {}, ffi.new("int *"), 0
@@ -221,11 +230,11 @@ class March:
         check(lib.dvi_march_load_memory(self.pointer, state, len(state)))
         return self
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"<March at t = {self.t:g}>"
 
 
-def mesh_of(scene) -> Mesh:
+def mesh_of(scene: Scene) -> Mesh:
     """Return the mesh of a scene."""
     pointer = lib.dvi_scene_mesh(scene.scene)
     if pointer == ffi.NULL:
@@ -233,7 +242,7 @@ def mesh_of(scene) -> Mesh:
     return Mesh(pointer, scene.owned)
 
 
-def field_of(scene) -> Field:
+def field_of(scene: Scene) -> Field:
     """Return the field of a scene."""
     pointer = lib.dvi_scene_field(scene.scene)
     if pointer == ffi.NULL:

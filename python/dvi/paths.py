@@ -1,10 +1,17 @@
 """Paths between two ends, or closed ones, on which a discrete action is stationary."""
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
 import numpy as np
+from numpy.typing import ArrayLike
 
 from dvi._dvi import ffi, lib
-from dvi._library import Owned, numbers, text, vector
+from dvi._library import Owned, encoded, numbers, text, vector
 from dvi.errors import check
 from dvi.study import check_on
+from dvi.system import System
 
 REPORT = ("action", "energy", "span", "energy_spread", "gradient", "negative", "zero",
           "symmetries", "iterations")
@@ -19,7 +26,17 @@ class Path:
     and span, energy_spread, gradient, symmetries, iterations, as dvi/path.h has them
     """
 
-    def __init__(self, system, pointer, report):
+    action: float
+    energy: float
+    span: float
+    energy_spread: float
+    gradient: float
+    negative: int
+    zero: int
+    symmetries: int
+    iterations: int
+
+    def __init__(self, system: System, pointer: Any, report: Any) -> None:
         rows = range(lib.dvi_path_steps(pointer) + 1)
         self.system, self.method = system, text(lib.dvi_path_method(pointer))
         self.t = np.array([lib.dvi_path_time(pointer, k) for k in rows])
@@ -28,12 +45,12 @@ class Path:
         for name in REPORT:
             setattr(self, name, getattr(report, name))
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return (f"<Path of {self.method}: {len(self.t) - 1} steps from t = {self.t[0]:g} to "
                 f"{self.t[-1]:g}, action {self.action:.6g}>")
 
 
-def _ends(given):
+def _ends(given: Iterable[str]) -> int:
     """Return the boundary conditions that the given arrays belong to."""
     kinds = {("q0", "q1"): lib.DVI_ENDS_FIXED, ("p0", "q0"): lib.DVI_ENDS_INITIAL,
              (): lib.DVI_ENDS_PERIODIC}
@@ -43,7 +60,9 @@ def _ends(given):
     return kind
 
 
-def path(system, method, steps, span, guess=None, start=0.0, **ends):
+def path(system: System, method: str, steps: int, span: float,
+         guess: tuple[ArrayLike, ArrayLike] | None = None, start: float = 0.0,
+         **ends: ArrayLike) -> Path:
     """Find a path on which the discrete action of all its steps is stationary.
 
     method  galerkin, midpoint, trapezoidal, hp or hamiltonian
@@ -59,7 +78,8 @@ def path(system, method, steps, span, guess=None, start=0.0, **ends):
     for name, array in held.items():
         setattr(options, name, numbers(array))
     made, report = ffi.new("dvi_path **"), ffi.new("dvi_path_report *")
-    check_on(system, lib.dvi_path_create(system.pointer, method.encode(), options, made))
+    specification = encoded(method, "the method")
+    check_on(system, lib.dvi_path_create(system.pointer, specification, options, made))
     owned = Owned("path", made[0], system.owned)
     if guess is not None:
         t = vector(guess[0], np.size(guess[0]), "the times of the guess")

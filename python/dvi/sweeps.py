@@ -1,19 +1,26 @@
 """Sweeps: runs at all points of a grid of parameters or starts, on several threads."""
+from __future__ import annotations
+
 import threading
+from collections.abc import Callable, Mapping
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from dvi._dvi import ffi, lib
-from dvi._library import numbers, text, vector
+from dvi._library import Array, numbers, text, vector
 from dvi.errors import Error, check
 from dvi.integrator import Integrator
+from dvi.recording import interrupts
 from dvi.scene import Scene
 from dvi.study import Table
+from dvi.system import System
 
-ENTRIES = [("status", "U64"), ("steps", np.int64), ("t", float)]
+ENTRIES: list[tuple[str, Any]] = [("status", "U64"), ("steps", np.int64), ("t", float)]
 
 
-def values(first, last, count):
+def values(first: float, last: float, count: int) -> Array:
     """Return equally spaced values with both ends, the bits of dvi sweep --set NAME=A:B:COUNT."""
     made = np.empty(max(count, 0))
     check(lib.dvi_study_range(first, last, count, numbers(made)))
@@ -23,22 +30,27 @@ def values(first, last, count):
 class Sweep(Table):
     """The rows of a sweep, a structured array. `sentences` says why runs failed, by their row."""
 
-    def __array_finalize__(self, of):
+    sentences: dict[int, str]
+
+    def __array_finalize__(self, of: Any) -> None:
         self.sentences = getattr(of, "sentences", {})
 
 
 class _Points:
     """The callbacks of a sweep, and its rows."""
 
-    def __init__(self, make, names, h, t_end):
+    def __init__(self, make: Callable[..., Integrator], names: list[str], h: float,
+                 t_end: float) -> None:
         self.make, self.names, self.h, self.t_end = make, names, h, t_end
-        self.opened, self.rows = {}, {}
-        self.failure = self.system = None
+        self.opened: dict[int, dict[str, Any]] = {}
+        self.rows: dict[int, dict[str, Any]] = {}
+        self.failure: BaseException | None = None
+        self.system: System | None = None
         self.lock = threading.Lock()
 
-    def guarded(self, kind, function):
+    def guarded(self, kind: str, function: Callable[..., Any]) -> Any:
         """Return a callback of C. An exception ends the sweep, and is raised after it."""
-        def call(*arguments):
+        def call(*arguments: Any) -> Any:
             try:
                 return function(*arguments) or 0
             except BaseException as failure:  # it must not pass through C
@@ -46,10 +58,10 @@ class _Points:
                 return lib.DVI_CALLBACK_FAILED
         return ffi.callback(kind, call, error=lib.DVI_CALLBACK_FAILED)
 
-    def open(self, point, run, _):
+    def open(self, point: Any, run: Any, _: Any) -> int:
         """Make the run of a point. An error of the library is the point's own."""
         given = dict(zip(self.names, ffi.unpack(point.value, len(self.names))))
-        held = {}
+        held: dict[str, Any] = {}
         with self.lock:
             self.opened[point.number] = held
         run.user = ffi.cast("void *", point.number)
@@ -67,8 +79,9 @@ class _Points:
         run.options.h, run.options.t_end = self.h, self.t_end
         if events:
             run.options.events, run.options.event_count = held["list"], len(events)
+        return 0
 
-    def found(self, point, run, row, _):
+    def found(self, point: Any, run: Any, row: Any, _: Any) -> int:
         """Keep the row of a point. A positive number ends the sweep."""
         held = self.opened[point.number]
         if self.failure is not None:
@@ -83,15 +96,16 @@ class _Points:
         made["status"] = status
         if row.q != ffi.NULL:
             system = held["integrator"].system
-            system.raise_failure()
+            system.raise_failure(of_any_thread=True)
             self.adopt(system)
             sizes = {"q": system.nq, "p": system.nv, "invariant": len(system.invariants),
                      "least": system.nq, "most": system.nq}
             made.update({name: ffi.unpack(getattr(row, name), size)
                          for name, size in sizes.items() if getattr(row, name) != ffi.NULL})
         self.rows[point.number] = made
+        return 0
 
-    def adopt(self, system):
+    def adopt(self, system: System) -> None:
         """Take the columns of the first system, which all others must have."""
         self.system = self.system or system
         for names in ("coordinates", "momenta", "invariants"):
@@ -99,14 +113,14 @@ class _Points:
                 raise ValueError("the points of a sweep need systems with the same coordinates, "
                                  "momenta and invariants")
 
-    def close(self, run, _):
+    def close(self, run: Any, _: Any) -> None:
         """Free the run of a point."""
         with self.lock:
             self.opened.pop(int(ffi.cast("intptr_t", run.user)), None)
 
-    def table(self, extremes):
+    def table(self, extremes: bool) -> Sweep:
         """Return the rows in the order of the points."""
-        lists = {}
+        lists: dict[str, list[str]] = {}
         if self.system is not None:
             lists = {"q": self.system.coordinates, "p": self.system.momenta,
                      "invariant": self.system.invariants}
@@ -114,9 +128,10 @@ class _Points:
                 lists["least"] = [f"least_{name}" for name in self.system.coordinates]
                 lists["most"] = [f"most_{name}" for name in self.system.coordinates]
         columns = [name for names in lists.values() for name in names] + ["energy_error"]
-        kinds = [(name, float) for name in self.names] + ENTRIES
+        kinds: list[tuple[str, Any]] = [(name, float) for name in self.names] + ENTRIES
         kinds += [(name, float) for name in columns]
-        rows, sentences = [], {}
+        rows: list[tuple[Any, ...]] = []
+        sentences: dict[int, str] = {}
         for k, row in enumerate(self.rows[number] for number in sorted(self.rows)):
             if row["sentence"] is not None:
                 sentences[k] = row["sentence"]
@@ -129,19 +144,21 @@ class _Points:
         return made
 
 
-def _of_scene(scene, method):
+def _of_scene(scene: Scene, method: str | None) -> Callable[..., Integrator]:
     """Return a function that makes a started integrator of the scene with other parameters."""
     name, source, parameters = scene._made_of
     method = method or text(scene._plan.method)
     if method is None:
         raise TypeError("the scene has no method: give one")
 
-    def make(**given):
+    def make(**given: float) -> Integrator:
         return Integrator(Scene.parse(source, name, **{**parameters, **given}), method).start()
     return make
 
 
-def sweep(make, grid, h=None, t_end=None, method=None, threads=0, part=(0, 1), extremes=False):
+def sweep(make: Scene | Callable[..., Integrator], grid: Mapping[str, ArrayLike],
+          h: float | None = None, t_end: float | None = None, method: str | None = None,
+          threads: int = 0, part: tuple[int, int] = (0, 1), extremes: bool = False) -> Sweep:
     """Run all points of a grid, as dvi sweep does.
 
     make      a scene, whose parameters are varied; or a function that takes the values of a point
@@ -151,9 +168,9 @@ def sweep(make, grid, h=None, t_end=None, method=None, threads=0, part=(0, 1), e
     threads   runs at a time. Default: the number of cores. The rows have the same bits for all
     part      (k, n) takes points k, k + n, .. of the grid alone, to share it among machines
     extremes  adds the least and the most of each coordinate, least_x and most_x
-    Returns a `Sweep`, a table: the values, status (DVI_OK, "event NAME", or why the run failed), steps, t,
-    coordinates, momenta and invariants at the end, and the largest energy_error. Failed runs have
-    NaN where there is no number.
+    Returns a `Sweep`, a table: the values, status (DVI_OK, "event NAME", or why the run failed),
+    steps, t, coordinates, momenta and invariants at the end, and the largest energy_error. Failed
+    runs have NaN where there is no number.
     """
     if isinstance(make, Scene):
         h = make._plan.h if h is None else h
@@ -177,7 +194,7 @@ def sweep(make, grid, h=None, t_end=None, method=None, threads=0, part=(0, 1), e
         "part": part[0], "parts": part[1], "extremes": extremes,
         "threads": threads or lib.dvi_study_cores()})
     options.open, options.found, options.close = callbacks
-    interrupted = ffi.new("int *")
+    interrupted = ffi.new("int *", interrupts())
     status = lib.interruptible_sweep(options, interrupted)
     if state.failure is not None:
         raise state.failure

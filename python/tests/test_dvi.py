@@ -249,6 +249,10 @@ def test_measured_orders(kepler):
     assert "holds" in table._repr_html_() and "<th>energy_error</th>" in table._repr_html_()
     by_ida = dvi.order(kepler, "galerkin:degree=2", h=0.1, t_end=2, levels=4, reference="ida")
     assert np.allclose(by_ida["error"][:2], table["error"][:2] * 16 / 15, rtol=0.05)
+    searched = dvi.order(kepler, "galerkin:degree=2", h=None, t_end=2, reference="ida")
+    assert searched.holds and np.all(searched["error"] > searched.floor)
+    with pytest.raises(dvi.BadArgument, match="a search for steps needs"):
+        dvi.order(kepler, "verlet", h=None, t_end=2)
     with pytest.raises(dvi.BadArgument, match="ratio"):
         dvi.order(kepler, "verlet", h=0.1, t_end=2, ratio=1)
     with pytest.raises(dvi.BadArgument, match="levels"):

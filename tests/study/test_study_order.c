@@ -205,6 +205,98 @@ START_TEST(a_solution_that_fails_or_is_not_finite_is_refused)
 }
 END_TEST
 
+START_TEST(without_a_step_the_levels_are_searched_for)
+{
+  static const char *const method[] = {"verlet", "galerkin:degree=2", "galerkin:degree=4"};
+  static const int claimed[] = {2, 4, 8};
+  const dvi_study_order_options search = {.size = sizeof search, .levels = LEVELS, .once = 1};
+  dvi_study_runs runs = runs_to(1.0);
+  runs.exact = exact;
+  for (int i = 0; i < 3; i++) {
+    ck_assert_int_eq(dvi_study_order(model->system, method[i], &runs, &search, level, &result),
+                     DVI_OK);
+    ck_assert(result.levels == LEVELS && result.holds && result.claimed == claimed[i]);
+    ck_assert_double_le(fabs(result.order - claimed[i]), 0.2);
+    for (int k = 0; k < LEVELS; k++)
+      ck_assert(level[k].error > result.floor && level[k].error < result.ceiling);
+  }
+  runs.exact = NULL;
+  ck_assert_int_eq(dvi_study_order(model->system, "verlet", &runs, &search, level, &result),
+                   DVI_BAD_ARGUMENT);
+  check_words("a search for steps needs one of end, exact and reference");
+}
+END_TEST
+
+/* Set when the solution is asked for. */
+static volatile int cancelling;
+
+static int exact_and_cancel(double t, double *q, void *user)
+{
+  cancelling = 1;
+  return exact(t, q, user);
+}
+
+START_TEST(a_cancelled_study_keeps_no_fit)
+{
+  const dvi_study_order_options search = {.size = sizeof search, .once = 1};
+  dvi_study_runs runs = runs_to(1.0);
+  runs.cancel = &cancelling;
+  runs.exact = exact;
+  ck_assert_int_eq(study("verlet", &runs), DVI_OK);
+  ck_assert(!result.cancelled && result.levels == LEVELS);
+  runs.exact = exact_and_cancel;
+  ck_assert_int_eq(study("verlet", &runs), DVI_OK);
+  ck_assert(result.cancelled && result.levels == 0 && result.first == -1 && !result.holds);
+  ck_assert_int_eq(dvi_study_order(model->system, "verlet", &runs, &search, level, &result),
+                   DVI_OK);
+  ck_assert(result.cancelled && result.levels == 0);
+  dvi_study_job job[2] = {{.method = "verlet", .h = 0.1}, {.method = "midpoint", .h = 0.1}};
+  ck_assert_int_eq(dvi_study_work(model->system, &runs, 2, job, 3), DVI_OK);
+  for (int i = 0; i < 2; i++)
+    ck_assert(job[i].cancelled && job[i].error == 0.0 && job[i].seconds.upper == 0.0);
+  cancelling = 0;
+}
+END_TEST
+
+/* A rule whose error is that of an order, but with more than 100 parts. */
+static dvi_status failing_rule(double parts, double *error, void *user)
+{
+  const int *order = user;
+  *error = pow(parts, -*order);
+  return parts > 100.0 ? DVI_CALLBACK_FAILED : DVI_OK;
+}
+
+START_TEST(levels_of_anything_are_searched_for)
+{
+  int order = 6;
+  dvi_study_search wanted = {.size = sizeof wanted,
+                             .levels = 5,
+                             .order = order,
+                             .span = 1.0,
+                             .size_of_result = 1.0,
+                             .run = failing_rule,
+                             .user = &order};
+  dvi_study_levels found;
+  ck_assert_int_eq(dvi_study_search_levels(&wanted, &found), DVI_OK);
+  ck_assert_int_ne(found.room, 0);
+  for (int k = 0; k < 5; k++) {
+    ck_assert(k == 0 || found.parts[k] > found.parts[k - 1]);
+    ck_assert_double_gt(pow((double)found.parts[k], -order), found.floor);
+  }
+  wanted.order = order = 1;
+  ck_assert_int_eq(dvi_study_search_levels(&wanted, &found), DVI_CALLBACK_FAILED);
+  wanted.size_of_result = (double)NAN;
+  ck_assert_int_eq(dvi_study_search_levels(&wanted, &found), DVI_BAD_ARGUMENT);
+  wanted.size_of_result = 1.0;
+  wanted.levels = DVI_STUDY_LEVELS_MAX + 1;
+  ck_assert_int_eq(dvi_study_search_levels(&wanted, &found), DVI_BAD_ARGUMENT);
+  wanted.levels = 5;
+  wanted.length = -1.0;
+  ck_assert_int_eq(dvi_study_search_levels(&wanted, &found), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_study_search_levels(NULL, &found), DVI_BAD_ARGUMENT);
+}
+END_TEST
+
 START_TEST(bad_options_are_refused)
 {
   static const dvi_study_order_options bad[] = {
@@ -260,6 +352,9 @@ SUITE(study_order)
   tcase_add_test(tests, a_run_that_fails_names_its_step_and_keeps_the_levels_before);
   tcase_add_test(tests, bad_runs_are_refused);
   tcase_add_test(tests, a_solution_that_fails_or_is_not_finite_is_refused);
+  tcase_add_test(tests, without_a_step_the_levels_are_searched_for);
+  tcase_add_test(tests, a_cancelled_study_keeps_no_fit);
+  tcase_add_test(tests, levels_of_anything_are_searched_for);
   tcase_add_test(tests, bad_options_are_refused);
   tcase_add_test(tests, lack_of_memory_anywhere_is_a_status);
 }

@@ -18,8 +18,10 @@ enum {
   DVI_STUDY_FIT_LEAST = 4,       /**< fewer levels than this decide nothing */
   DVI_STUDY_ROUNDS_MAX = 99,     /**< largest number of rounds */
   DVI_STUDY_STEPS_MAX = 1 << 28, /**< largest number of steps that a run of a given step may have */
-  DVI_STUDY_AXES_MAX = 64,       /**< largest number of axes of a grid */
-  DVI_STUDY_THREADS_MAX = 1024   /**< largest number of threads */
+  DVI_STUDY_FIRST_PARTS_MAX = 1 << 24, /**< largest number of parts of a given first level */
+  DVI_STUDY_FLOOR_MARGIN = 10, /**< factor by which an error must exceed disturbances to count */
+  DVI_STUDY_AXES_MAX = 64,     /**< largest number of axes of a grid */
+  DVI_STUDY_THREADS_MAX = 1024 /**< largest number of threads */
 };
 
 /** The runs of a study: their start, their end, and what q is at their end. */
@@ -36,13 +38,18 @@ typedef struct dvi_study_runs {
   int (*exact)(double t, double *q, void *user);
   void *user;
   int reference; /**< not 0 to compare with IDA (dvi_reference_judge at its defaults) */
+  /** The study ends when this becomes not 0, within a step as in dvi_run_options, but for the run
+   *  of IDA. May be NULL */
+  const volatile int *cancel;
 } dvi_study_runs;
 
 /** Options of an order study. Zero means default. */
 typedef struct dvi_study_order_options {
-  size_t size;  /**< sizeof(dvi_study_order_options) */
-  double h;     /**< step of the first level, without sign. Required */
-  double ratio; /**< ratio of neighbouring steps, above 1 (default 2) */
+  size_t size; /**< sizeof(dvi_study_order_options) */
+  /** step of the first level, without sign. Default: the levels are searched for
+   *  (dvi_study_search_levels), which needs one of `end`, `exact` and `reference` */
+  double h;
+  double ratio; /**< ratio of neighbouring steps, above 1 (default 2, or that of the search) */
   int levels;   /**< number of levels, from 2 to DVI_STUDY_LEVELS_MAX (default 6) */
   int once;     /**< not 0 to leave short runs as they are, without repeats for the clock */
 } dvi_study_order_options;
@@ -74,6 +81,8 @@ typedef struct dvi_study_order_result {
   /** Errors up to the floor, ten times the judge's error or a rounding of q, and from the ceiling
    *  on, 1 % of the largest coordinate, are not fitted */
   double floor, ceiling;
+  /** not 0 if `cancel` ended the study. The levels before are there, without a fit */
+  int cancelled;
 } dvi_study_order_result;
 
 /** Repeated measurements in a few numbers. Half of them lie between the quartiles. */
@@ -90,10 +99,48 @@ typedef struct dvi_study_job {
   double h;           /**< step without sign, given by the caller */
   /** DVI_OK, or the status above 0 with which the run failed. All numbers below are then 0 */
   dvi_status status;
-  double error;             /**< largest difference of a coordinate at t_end */
+  int cancelled; /**< not 0 if `cancel` ended the study. The other numbers of all jobs are then 0 */
+  double error;  /**< largest difference of a coordinate at t_end */
   dvi_counters counters;    /**< work of a run */
   dvi_study_spread seconds; /**< process time of a run, over the rounds */
 } dvi_study_job;
+
+/** A search for levels: runs of anything that is divided into parts, such as steps, whose error
+ *  falls by an order. Zero means default. */
+typedef struct dvi_study_search {
+  size_t size;           /**< sizeof(dvi_study_search) */
+  int levels;            /**< number of levels, from 1 to DVI_STUDY_LEVELS_MAX */
+  int order;             /**< claimed order, at least 1 */
+  double span;           /**< interval that is divided into parts, not 0 */
+  double first_parts;    /**< parts at which the search begins (default 1) */
+  double size_of_result; /**< size of the result, above 0 */
+  double judge_error;    /**< error of what the runs are compared with */
+  /** length of the first level's parts, at most DVI_STUDY_FIRST_PARTS_MAX of them (default:
+   *  searched) */
+  double length;
+  double ratio; /**< ratio of neighbouring lengths (default: chosen) */
+  /** error of a first level that is searched, relative to the size of the result (default: the
+   *  larger, the lower the order) */
+  double first_error;
+  int may_miss; /**< not 0 if runs with any number of parts may end far from the result */
+  /** Run once, and measure the error. A status above 0 if this level has no result but another one
+   *  may have, below 0 to end the search */
+  dvi_status (*run)(double parts, double *error, void *user);
+  /** Measure how far roundoff moves the result, with a status as that of `run`. May be NULL */
+  dvi_status (*roundoff)(double parts, double *moved, void *user);
+  void *user;
+} dvi_study_search;
+
+/** The levels that were found. */
+typedef struct dvi_study_levels {
+  /** [levels] ascending. The first is 0, and nothing else is known, if all levels of a search that
+   *  may miss fail or miss the result altogether */
+  long parts[DVI_STUDY_LEVELS_MAX];
+  double ceiling; /**< errors from this one on are too large to tell an order */
+  double floor;   /**< errors up to this one belong to roundoff or to the judge */
+  int room; /**< not 0 if the levels fit above the floor. Else so few parts reach it that they do
+             *   not */
+} dvi_study_levels;
 
 /** A parameter of a grid, and its values. */
 typedef struct dvi_study_axis {
@@ -193,6 +240,16 @@ extern "C" {
 dvi_status dvi_study_order(const dvi_system *system, const char *method, const dvi_study_runs *runs,
                            const dvi_study_order_options *options, dvi_study_level *level,
                            dvi_study_order_result *result);
+
+/** Search for levels whose errors lie between what is too large to tell an order and what roundoff
+ *  or the judge makes of it. Each level at most halves the length, and less for high orders, of
+ *  which a halving would cross the floor at once.
+ *
+ *  @retval DVI_BAD_ARGUMENT  a pointer is NULL, the size is not that of the struct, or a number is
+ *                            out of range
+ *  @retval (others)          of `run` and `roundoff`: those below 0, and those above 0 if even the
+ *                            finest level fails */
+dvi_status dvi_study_search_levels(const dvi_study_search *wanted, dvi_study_levels *found);
 
 /** Measure the process time of methods against their error. Every round runs every job once, or as
  *  often as the clock needs, so that whatever slows the machine for a while slows all of them.

@@ -23,6 +23,11 @@ dvi_status dvi__runs_check(const dvi_system *system, const dvi_study_runs *runs)
   return DVI_OK;
 }
 
+int dvi__runs_cancelled(const dvi_study_runs *runs)
+{
+  return runs->cancel != NULL && *runs->cancel != 0;
+}
+
 double dvi__runs_steps(const dvi_study_runs *runs, double h)
 {
   return fmax(round(fabs(runs->t_end - runs->t) / h), 1.0);
@@ -56,8 +61,8 @@ static dvi_status trial_start(const dvi__trial *trial)
 static dvi_status trial_run(const dvi__trial *trial)
 {
   const dvi_study_runs *runs = trial->runs;
-  const dvi_run_options run = {.h = copysign(trial->h, runs->t_end - runs->t),
-                               .t_end = runs->t_end};
+  const dvi_run_options run = {
+      .h = copysign(trial->h, runs->t_end - runs->t), .t_end = runs->t_end, .cancel = runs->cancel};
   DVI_TRY(trial_start(trial));
   return dvi_run(trial->integrator, &run, NULL);
 }
@@ -90,7 +95,7 @@ void dvi__trial_close(dvi__trial *trial)
 dvi_status dvi__trial_time(dvi__trial *trial, long repeats, double *seconds)
 {
   const double began = dvi_study_clock();
-  for (long i = 0; i < repeats; i++) DVI_TRY(trial_run(trial));
+  for (long i = 0; i < repeats && !dvi__runs_cancelled(trial->runs); i++) DVI_TRY(trial_run(trial));
   *seconds = (dvi_study_clock() - began) / (double)repeats;
   return DVI_OK;
 }
@@ -102,7 +107,8 @@ dvi_status dvi__trial_energy(dvi__trial *trial, double *change)
   const dvi_run_options run = {.h = copysign(trial->h, runs->t_end - runs->t),
                                .t_end = runs->t_end,
                                .observe = watch_energy,
-                               .user = &watch};
+                               .user = &watch,
+                               .cancel = runs->cancel};
   DVI_TRY(trial_start(trial));
   DVI_TRY(dvi_integrator_invariant(trial->integrator, 0, &watch.first));
   DVI_TRY(dvi_run(trial->integrator, &run, NULL));

@@ -15,6 +15,9 @@ typedef struct dvi__trial {
 /* Return DVI_OK if the runs can be made, as far as that is seen without one. */
 dvi_status dvi__runs_check(const dvi_system *system, const dvi_study_runs *runs);
 
+/* Return whether the study is to end. A run may then have ended before its time. */
+int dvi__runs_cancelled(const dvi_study_runs *runs);
+
 /* Return the number of equal steps, at least 1, whose length is nearest to h > 0. */
 double dvi__runs_steps(const dvi_study_runs *runs, double h);
 

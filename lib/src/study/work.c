@@ -10,6 +10,7 @@ typedef struct work_study {
   const dvi_system *system;
   const dvi_study_runs *runs;
   int count, rounds;
+  int cancelled; /* the flag was seen, and jobs may be without a run */
   dvi_study_job *job;
   double *solution;  /* [nq] */
   dvi__trial *trial; /* [count] without an integrator where the job's run failed */
@@ -33,10 +34,16 @@ static dvi_status jobs_check(const dvi_study_runs *runs, int count, const dvi_st
   return DVI_OK;
 }
 
+static int is_cancelled(work_study *s)
+{
+  s->cancelled = s->cancelled || dvi__runs_cancelled(s->runs);
+  return s->cancelled;
+}
+
 /* Run each job once. */
 static dvi_status open_jobs(work_study *s)
 {
-  for (int i = 0; i < s->count; i++) {
+  for (int i = 0; i < s->count && !is_cancelled(s); i++) {
     dvi_study_job *job = &s->job[i];
     dvi__trial *trial = &s->trial[i];
     *job = (dvi_study_job){.method = job->method, .h = job->h};
@@ -51,17 +58,24 @@ static dvi_status open_jobs(work_study *s)
   return DVI_OK;
 }
 
+static void cancel_jobs(const work_study *s)
+{
+  for (int i = 0; i < s->count; i++)
+    s->job[i] = (dvi_study_job){.method = s->job[i].method, .h = s->job[i].h, .cancelled = 1};
+}
+
 static dvi_status measure(work_study *s)
 {
   DVI_TRY(dvi__judge(s->system, s->runs, s->solution, &(double){0.0}));
   DVI_TRY(open_jobs(s));
   for (int round = 0; round < s->rounds; round++)
     for (int i = 0; i < s->count; i++)
-      if (s->job[i].status == DVI_OK)
+      if (s->job[i].status == DVI_OK && !is_cancelled(s))
         DVI_TRY(dvi__trial_time(&s->trial[i], dvi_study_repeats(s->trial[i].seconds),
                                 &s->sample[(size_t)i * (size_t)s->rounds + (size_t)round]));
   for (int i = 0; i < s->count; i++)
     s->job[i].seconds = dvi_study_spread_of(s->rounds, s->sample + (size_t)i * (size_t)s->rounds);
+  if (is_cancelled(s)) cancel_jobs(s);
   return DVI_OK;
 }
 

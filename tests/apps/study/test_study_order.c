@@ -20,8 +20,8 @@ enum { TEXT = 4096 };
 static result_table *study_order(const study_subject *subject, int levels, order_result *result,
                                  table_column *columns)
 {
-  levels_choice choice;
-  const levels_request request = {.count = levels};
+  dvi_study_levels choice;
+  const dvi_study_search request = {.levels = levels};
   memset(result, 0, sizeof *result);
   order_columns(subject->words, columns);
   result_table *rows = table_create(columns);
@@ -165,8 +165,8 @@ START_TEST(failures_are_rough_or_final)
 {
   rule r = simpson();
   study_subject subject = subject_of(&r, "simpson", 4);
-  const levels_request request = {.count = 4};
-  levels_choice choice;
+  const dvi_study_search request = {.levels = 4};
+  dvi_study_levels choice;
   r.odd_fails = 1;
   ck_assert_int_eq(levels_choose(&subject, &request, &choice), DVI_OK);
   ck_assert_int_eq((int)(choice.parts[0] % 2), 0);
@@ -222,7 +222,7 @@ START_TEST(levels_are_added_while_the_slope_comes_near_the_order)
 {
   rule r = simpson();
   study_subject subject = subject_of(&r, "rising", 4);
-  const levels_choice choice = {.parts = {2, 4, 8, 16, 32, 64}, .floor = 1e-14, .ceiling = 1.0};
+  const dvi_study_levels choice = {.parts = {2, 4, 8, 16, 32, 64}, .floor = 1e-14, .ceiling = 1.0};
   table_column columns[ORDER_COLUMNS_MAX];
   order_result result = {0};
   char text[TEXT];
