@@ -119,6 +119,6 @@ until: 10
 END
 silent 'a net at rest' run net.yaml --final
 sed 's/0.16\*i/0.16001*i/' net.yaml >moved.yaml
-warned 'a small motion hides nothing' run moved.yaml --method midpoint --h 0.5 --final
+warned 'a small motion hides nothing' run moved.yaml --method verlet --h 0.1 --final
 silent 'a drive' run driven-pendulum --method midpoint --h 0.5 --final
 finish
