@@ -136,12 +136,12 @@ typedef struct hdf5_module {
   /** Close the file. The pointer becomes NULL in any case. */
   bool (*close_frames)(hdf5_frames **frames);
 
-  /** Open a file of fields to read. Its run may go on, or have been killed: then these are the times
-   * that were flushed. Numbers of corners, and of points that cells name, are not tested. */
+  /** Open a file of fields to read. Its run may go on, or have been killed: then these are the
+   * times that were flushed. Numbers of corners, and of points that cells name, are not tested. */
   hdf5_views *(*open_views)(const char *path, hdf5_views_content *content);
 
-  /** Read the points [points*3] and the values of all fields, each [points or cells][components], at
-   * a step. */
+  /** Read the points [points*3] and the values of all fields, each [points or cells][components],
+   * at a step. */
   bool (*read_view)(hdf5_views *views, int64_t step, double *point, double *const *value);
 
   /** Close the file. The pointer becomes NULL. */

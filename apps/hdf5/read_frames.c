@@ -1,8 +1,8 @@
 #include "hdf5/read_frames.h"
 
 #include <limits.h>
+#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "hdf5/h5.h"
 #include "hdf5/head.h"
@@ -172,7 +172,7 @@ static bool open_field(hdf5_views *views, bool is_by_cell, hid_t data, hid_t off
   field_place *place = &views->place[views->fields++];
   int64_t rows;
   int width;
-  (void)strcpy(place->name, name);
+  (void)snprintf(place->name, sizeof place->name, "%s", name);
   place->set = open_object(data, name);
   if (place->set < 0 || !measure(place->set, &rows, &width)) return false;
   *field = (hdf5_field){

@@ -27,8 +27,8 @@ typedef struct grid_frames {
   float *value[VTU_FIELDS]; /**< [fields][frames][points or cells] */
 } grid_frames;
 
-/** Read the list of a series, FILE.pvd, or open FILE.vtkhdf, or take a single FILE.vtu. Returns DONE, or complains and
- * returns the exit code. Call grid_series_clear afterwards in any case. */
+/** Read the list of a series, FILE.pvd, or open FILE.vtkhdf, or take a single FILE.vtu. Returns
+ * DONE, or complains and returns the exit code. Call grid_series_clear afterwards in any case. */
 int grid_series_read(const char *path, grid_series *series);
 void grid_series_clear(grid_series *series);
 

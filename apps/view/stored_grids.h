@@ -17,8 +17,8 @@ bool stored_grids_are_wanted(const char *path);
 /** Open a file. Returns DONE, or complains and returns FAILED. */
 int stored_grids_open(stored_grids *grids, const char *path);
 
-/** Read the grid of a step. Returns DONE, or complains and returns FAILED. Call vtu_clear afterwards
- * in any case. */
+/** Read the grid of a step. Returns DONE, or complains and returns FAILED. Call vtu_clear
+ * afterwards in any case. */
 int stored_grids_read(const stored_grids *grids, int64_t step, const char *path, vtu_grid *grid);
 
 void stored_grids_close(stored_grids *grids);

@@ -233,8 +233,9 @@ expect 1 'no fields' view nowhere.vtkhdf --out x.html
 [ ! -e x.html ] || fail 'a page without fields'
 "$python" - <<END
 import h5py
-for name, array, at, number in ("cell", "Connectivity", 3, 10**6), ("point", "Points", 0, float("nan")), \
-        ("kind", "Types", 0, 7), ("count", "NumberOfCells", 0, 10**12), \
+for name, array, at, number in ("cell", "Connectivity", 3, 10**6), \
+        ("point", "Points", 0, float("nan")), ("kind", "Types", 0, 7), \
+        ("count", "NumberOfCells", 0, 10**12), \
         ("offset", "Steps/PointOffsets", 0, -5), ("offset2", "Steps/CellDataOffsets/u", 0, 10**12):
     with open("block.vtkhdf", "rb") as old, open(name + ".vtkhdf", "wb") as new:
         new.write(old.read())
