@@ -102,10 +102,22 @@ static int store_words(const command_line *command, const option *o, const char 
   return DONE;
 }
 
+/* A file of CSV under a name of HDF5 could be read by nothing. */
+static int check_ending(const command_line *command, const option *o, const char *text)
+{
+  static const char ending[] = ".h5";
+  const size_t length = strlen(text), end = sizeof ending - 1;
+  if (!o->is_csv || length <= end || strcmp(text + length - end, ending) != 0) return DONE;
+  return usage_error("%s: --%s %s: CSV is written there, and names that end in .h5 are of HDF5; "
+                     "give another name",
+                     command->name, o->name, text);
+}
+
 static int store_value(const command_line *command, const option *o, const char *text, void *value)
 {
   if ((o->kind == OPTION_WORD || o->kind == OPTION_WORDS) && text[0] == '\0')
     return missing_value(command, o);
+  if (check_ending(command, o, text) != DONE) return USAGE;
   switch (o->kind) {
   case OPTION_NUMBER:
     if (parse_number(text, value)) return DONE;

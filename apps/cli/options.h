@@ -36,6 +36,7 @@ typedef struct option {
   size_t place;      /**< offset of the value in the command's request, in bytes */
   const char *value; /**< spelling of the value in the help text, such as "H" */
   const char *help;
+  bool is_csv; /**< it names a file of CSV that is written; names of HDF5 are refused */
 } option;
 
 /** The kind and the place of an option whose value is this member of a request of this type. */
