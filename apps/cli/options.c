@@ -128,6 +128,7 @@ static int store_value(const command_line *command, const option *o, const char 
                        command->name, o->name, text);
   case OPTION_WORDS: return store_words(command, o, text, value);
   case OPTION_WORD: *(const char **)value = text; return DONE;
+  case OPTION_LIST: return missing_value(command, o); /* a shell lists no files behind "=" */
   default: return usage_error("%s: --%s takes no value", command->name, o->name);
   }
 }
@@ -141,6 +142,16 @@ typedef struct reading {
   bool given[OPTIONS_MAX];
   void *request;
 } reading;
+
+/* Take all arguments up to the next option. */
+static void take_list(reading *r, word_list *list)
+{
+  *list = (word_list){.word = r->argv + r->at + 1};
+  while (r->at + 1 < r->argc && strncmp(r->argv[r->at + 1], "--", 2) != 0) {
+    list->count++;
+    r->at++;
+  }
+}
 
 /* Take the option at argv[at], and its value from there or from the next argument. */
 static int take_option(reading *r)
@@ -162,6 +173,10 @@ static int take_option(reading *r)
   }
   if (r->at + 1 == r->argc || strncmp(r->argv[r->at + 1], "--", 2) == 0)
     return missing_value(command, o);
+  if (o->kind == OPTION_LIST) {
+    take_list(r, value);
+    return DONE;
+  }
   return store_value(command, o, r->argv[++r->at], value);
 }
 
