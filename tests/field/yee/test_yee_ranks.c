@@ -70,8 +70,7 @@ static void choose_axis(grid *g, int l, unsigned long long *seed)
   static const dvi_yee_boundary once[] = {DVI_YEE_PEC, DVI_YEE_PMC, DVI_YEE_ABSORBING,
                                           DVI_YEE_CPML};
   dvi_yee_axis *a = &g->terms.axis[l];
-  const int is_last = l == g->terms.axes - 1, around = chosen(seed, 3),
-            is_graded = chosen(seed, 2);
+  const int is_last = l == g->terms.axes - 1, around = chosen(seed, 3), is_graded = chosen(seed, 2);
   *a = (dvi_yee_axis){.cells = is_last ? 10 + chosen(seed, 4) : 5, .phase = 0.4 + l};
   a->upper = a->cells;
   for (int e = 0; e < 2; e++) {
@@ -114,10 +113,8 @@ static void choose_sources(grid *g, int kind, unsigned long long *seed)
   const double high = t->axis[t->axes - 1].cells - 3.1;
   g->current = (dvi_yee_current){.density = swirl, .signal = pulse};
   for (int i = 0; i < 2; i++) {
-    g->dipole[i] = (dvi_yee_dipole){.at = {2.2, 2.6, 3},
-                                    .along = {1, 2, 3},
-                                    .signal = pulse,
-                                    .is_moment = i};
+    g->dipole[i] = (dvi_yee_dipole){
+        .at = {2.2, 2.6, 3}, .along = {1, 2, 3}, .signal = pulse, .is_moment = i};
     g->dipole[i].at[t->axes - 1] = 2.2 + (high - 2.2) * random_number(seed);
   }
   g->wave = (dvi_yee_wave){.lower = {2, 2, 2}, .upper = {3, 3, 3}, .signal = pulse};
@@ -177,9 +174,9 @@ typedef struct trial {
   const grid *g;
   dvi_status status;
   int64_t size[FORMS], copies;
-  int *plane[FORMS];           /* of each cell along the axis that is divided */
-  double *start[FORMS];        /* with copies */
-  double *form[STEPS][FORMS];  /* with copies */
+  int *plane[FORMS];          /* of each cell along the axis that is divided */
+  double *start[FORMS];       /* with copies */
+  double *form[STEPS][FORMS]; /* with copies */
   double seen[STEPS][OBSERVED], step;
   int stop; /* the step behind which the state is saved and loaded */
   int64_t wrong[PROCESSES];
@@ -216,9 +213,8 @@ static int *planes_of(const dvi_yee_terms *terms, dvi_march_form form, int64_t s
 /* Half of the trials start with fields. */
 static void start(dvi_march *march, double *const *values, int is_given)
 {
-  const dvi_march_state state = {.size = sizeof state,
-                                 .E = is_given ? values[0] : NULL,
-                                 .B = is_given ? values[1] : NULL};
+  const dvi_march_state state = {
+      .size = sizeof state, .E = is_given ? values[0] : NULL, .B = is_given ? values[1] : NULL};
   (void)dvi_march_start(march, &state);
 }
 
@@ -258,14 +254,13 @@ static int64_t *numbers_of(const trial *t, const dvi_yee_ranks *r, int f, int64_
   return number;
 }
 
-static int64_t compare(const trial *t, const dvi_march *march, int f, int s,
-                       const int64_t *number, int64_t count)
+static int64_t compare(const trial *t, const dvi_march *march, int f, int s, const int64_t *number,
+                       int64_t count)
 {
   double *values = sample_march(march, f == 0 ? DVI_FORM_E : DVI_FORM_B);
   int64_t wrong = 0;
   for (int64_t i = 0; i < count * t->copies; i++)
-    wrong += memcmp(values + i,
-                    t->form[s][f] + i / count * t->size[f] + number[i % count],
+    wrong += memcmp(values + i, t->form[s][f] + i / count * t->size[f] + number[i % count],
                     sizeof *values) != 0;
   free(values);
   return wrong;
@@ -330,12 +325,12 @@ START_TEST(values_have_the_bits_of_one_process)
   grid *g = make_grid(1000 + (unsigned)_i);
   trial t = {.g = g, .stop = _i % STEPS};
   run_whole(&t, t.stop % 2);
-  for (int count = 1; count <= PROCESSES; count++) {
+  for (int count = 1 + _i % 3; count <= PROCESSES; count += 3) {
     memset(t.wrong, 0, sizeof t.wrong);
     run_box_ranks(count, run_rank, &t);
     for (int r = 0; r < count; r++)
-      ck_assert_msg(t.wrong[r] == 0, "process %d of %d: %lld: %s", r, count,
-                    (long long)t.wrong[r], t.sentence[r]);
+      ck_assert_msg(t.wrong[r] == 0, "process %d of %d: %lld: %s", r, count, (long long)t.wrong[r],
+                    t.sentence[r]);
   }
   for (int f = 0; f < FORMS; f++) {
     free(t.plane[f]), free(t.start[f]);
@@ -345,7 +340,122 @@ START_TEST(values_have_the_bits_of_one_process)
 }
 END_TEST
 
+/* ---- refusals ---- */
+
+static int none(int count, double *number, void *user)
+{
+  (void)count, (void)number, (void)user;
+  return 0;
+}
+
+static int none_of(int count, int64_t *number, void *user)
+{
+  (void)count, (void)number, (void)user;
+  return 0;
+}
+
+/* A pass of which the calls fail from a certain one on. */
+static int failing(int way, int around, int64_t count, const double *sent, double *received,
+                   void *user)
+{
+  int *left = user;
+  (void)way, (void)around, (void)count, (void)sent, (void)received;
+  return --*left < 0 ? 17 : 0;
+}
+
+static const dvi_yee_terms small = {
+    .size = sizeof small, .axes = 2, .degree = 1, .axis = {{.cells = 3}, {.cells = 5}}};
+
+static void refuse(const dvi_yee_terms *terms, const dvi_yee_ranks *ranks, dvi_status status,
+                   const char *words)
+{
+  dvi_yee_terms divided = *terms;
+  dvi_march *march;
+  divided.ranks = ranks;
+  ck_assert_int_eq(dvi_yee_create(&divided, &march), status);
+  ck_assert_ptr_null(march);
+  check_words(words);
+}
+
+START_TEST(bad_divisions_are_refused)
+{
+  const dvi_yee_terms line = {.size = sizeof line, .axes = 1, .axis = {{.cells = 9}}};
+  const dvi_yee_ranks good = {
+      .size = sizeof good, .count = 2, .pass = failing, .sum = none_of, .largest = none};
+  dvi_yee_ranks ranks = good;
+  ranks.size = 1;
+  refuse(&small, &ranks, DVI_BAD_ARGUMENT, "yee: set ranks.size");
+  ranks = good, ranks.rank = 2;
+  refuse(&small, &ranks, DVI_BAD_ARGUMENT, "yee: there is no process 2 of 2");
+  ranks = good, ranks.pass = NULL;
+  refuse(&small, &ranks, DVI_BAD_ARGUMENT, "by which processes speak are not all given");
+  ranks = good, ranks.count = 3;
+  refuse(&small, &ranks, DVI_BAD_ARGUMENT, "yee: axis y has 5 boxes, and 3 processes need 2 each");
+  refuse(&line, &good, DVI_UNSUPPORTED, "yee: a grid of one axis cannot be divided");
+}
+END_TEST
+
+START_TEST(one_process_needs_no_other)
+{
+  const dvi_yee_ranks ranks = {
+      .size = sizeof ranks, .count = 1, .pass = failing, .sum = none_of, .largest = none};
+  dvi_yee_terms terms = small;
+  const int first[] = {0, 0}, last[] = {2, 5};
+  terms.ranks = &ranks;
+  ck_assert_int_eq(dvi_yee_size(&terms, DVI_FORM_E), dvi_yee_size(&small, DVI_FORM_E));
+  ck_assert_int_eq(dvi_yee_place(&terms, DVI_FORM_E, 0, first), 0);
+  ck_assert_int_eq(dvi_yee_place(&terms, DVI_FORM_E, 0, last), 17);
+}
+END_TEST
+
+START_TEST(places_are_those_of_the_whole_grid)
+{
+  dvi_yee_ranks ranks = {
+      .size = sizeof ranks, .count = 2, .pass = failing, .sum = none_of, .largest = none};
+  dvi_yee_terms terms = small;
+  const int below[] = {1, 1}, above[] = {1, 2};
+  terms.ranks = &ranks;
+  ck_assert_int_eq(dvi_yee_size(&terms, DVI_FORM_E), 2 * 3 + 2 * 4);
+  ck_assert_int_eq(dvi_yee_place(&terms, DVI_FORM_E, 1, below), 2 * 3 + 4 + 1);
+  ck_assert_int_eq(dvi_yee_place(&terms, DVI_FORM_E, 1, above), -1);
+  ranks.rank = 1;
+  ck_assert_int_eq(dvi_yee_size(&terms, DVI_FORM_E), 4 * 3 + 3 * 4);
+  ck_assert_int_eq(dvi_yee_place(&terms, DVI_FORM_E, 1, below), -1);
+  ck_assert_int_eq(dvi_yee_place(&terms, DVI_FORM_E, 1, above), 4 * 3 + 1);
+}
+END_TEST
+
+/* A march that lost the others says so until it is started again. */
+START_TEST(a_failure_to_speak_is_told_until_a_start)
+{
+  int left = 4;
+  const dvi_yee_ranks ranks = {.size = sizeof ranks,
+                               .count = 2,
+                               .pass = failing,
+                               .sum = none_of,
+                               .largest = none,
+                               .user = &left};
+  dvi_yee_terms terms = small;
+  double value;
+  terms.ranks = &ranks;
+  dvi_march *march = box_march(&terms);
+  start_boxes(march, NULL, NULL);
+  ck_assert_int_eq(dvi_march_advance(march, 1), DVI_CALLBACK_FAILED);
+  check_words("yee: process 0 of 2 could not speak with the others: code 17");
+  left = 1000;
+  ck_assert_int_eq(dvi_march_advance(march, 1), DVI_CALLBACK_FAILED);
+  ck_assert_int_eq(dvi_march_observe(march, 0, &value), DVI_CALLBACK_FAILED);
+  start_boxes(march, NULL, NULL);
+  ck_assert_int_eq(dvi_march_advance(march, 1), DVI_OK);
+  dvi_march_destroy(&march);
+}
+END_TEST
+
 SUITE(yee_ranks)
 {
   tcase_add_loop_test(tests, values_have_the_bits_of_one_process, 0, TRIALS);
+  tcase_add_test(tests, bad_divisions_are_refused);
+  tcase_add_test(tests, one_process_needs_no_other);
+  tcase_add_test(tests, places_are_those_of_the_whole_grid);
+  tcase_add_test(tests, a_failure_to_speak_is_told_until_a_start);
 }

@@ -8,7 +8,7 @@
 #include "core/hash.h"
 #include "core/memory.h"
 #include "core/status.h"
-#include "field/yee/yee.h"
+#include "field/yee/ranks.h"
 
 enum { VERSION = 2 };
 

@@ -2,7 +2,7 @@
 #include <math.h>
 
 #include "core/status.h"
-#include "field/yee/yee.h"
+#include "field/yee/ranks.h"
 
 enum { VECTOR = 8, POINTS = 5 };
 

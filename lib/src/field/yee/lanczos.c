@@ -6,7 +6,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "field/algebra/ritz.h"
-#include "field/yee/yee.h"
+#include "field/yee/ranks.h"
 #include "num/philox.h"
 
 enum { VECTORS = 3 };

@@ -60,8 +60,7 @@ static size_t number_of(const dvi__yee *y, const int *cell)
 static size_t number_kept(const dvi__yee *y, const int *cell)
 {
   size_t number = 0;
-  for (int l = 2; l > 0; l--)
-    number = number * y->rows[l - 1] + dvi__yee_row_along(y, l, cell[l]);
+  for (int l = 2; l > 0; l--) number = number * y->rows[l - 1] + dvi__yee_row_along(y, l, cell[l]);
   return number * (size_t)y->axis[0].cells + (size_t)cell[0];
 }
 

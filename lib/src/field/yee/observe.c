@@ -4,7 +4,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "field/yee/yee.h"
+#include "field/yee/ranks.h"
 
 typedef dvi__yee_value value;
 

@@ -10,12 +10,12 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "field/yee/yee.h"
+#include "field/yee/ranks.h"
 
 struct dvi__yee_planes {
   dvi_yee_ranks ranks;
-  int failed;    /* what a function returned, 0 for success */
-  size_t across; /* rows of a plane */
+  int failed;                       /* what a function returned, 0 for success */
+  size_t across;                    /* rows of a plane */
   double *sent, *received, *moment; /* [copies*3*across*width], the last for a moment */
 };
 
@@ -116,10 +116,11 @@ dvi_status dvi__yee_agree(const dvi__yee *y, dvi_status status)
   dvi__yee_largest_of_all(y, 1, &failed);
   if (status != DVI_OK) return status;
   DVI_TRY(dvi__yee_check_ranks(y));
-  return failed == 0 ? DVI_OK
-                     : dvi__fail(DVI_CALLBACK_FAILED,
-                                 "yee: another one of %d processes failed, whose sentence tells why",
-                                 y->planes->ranks.count);
+  return failed == 0
+             ? DVI_OK
+             : dvi__fail(DVI_CALLBACK_FAILED,
+                         "yee: another one of %d processes failed, whose sentence tells why",
+                         y->planes->ranks.count);
 }
 
 /* ---- sums ---- */

@@ -6,7 +6,7 @@
  * with S of conductors and absorbing ends. This is continuous in t. At t_0 it is the start, and
  * without losses it is at t_n the mean of E^{n-1/2} and E^{n+1/2}. Errors have the order 2. */
 #include "core/status.h"
-#include "field/yee/yee.h"
+#include "field/yee/ranks.h"
 
 typedef dvi__yee_value value;
 

@@ -8,7 +8,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "field/yee/yee.h"
+#include "field/yee/ranks.h"
 #include "num/compensated.h"
 
 /* ---- signals ---- */
@@ -65,8 +65,7 @@ static dvi_status agree_on_signals(const dvi__yee *y, dvi_status status)
 static dvi_status ask(dvi__yee *y, int64_t step, double *drive)
 {
   const double t = y->t0 + (double)step * y->dt, half = 0.5 * y->dt;
-  for (int i = 0; i < y->sources; i++)
-    DVI_TRY(impulse_of(&y->source[i], t, half, half, &drive[i]));
+  for (int i = 0; i < y->sources; i++) DVI_TRY(impulse_of(&y->source[i], t, half, half, &drive[i]));
   return dvi__yee_ask_waves(y, y->t0 + ((double)step + 0.5) * y->dt);
 }
 

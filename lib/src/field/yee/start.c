@@ -3,7 +3,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "field/yee/yee.h"
+#include "field/yee/ranks.h"
 
 static void set_values(dvi__yee *y, dvi_march_form form, const double *values)
 {

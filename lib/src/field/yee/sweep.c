@@ -8,7 +8,7 @@
  * the tile before by one plane at least. */
 #include "core/memory.h"
 #include "core/status.h"
-#include "field/yee/yee.h"
+#include "field/yee/ranks.h"
 
 enum { CACHE = 3 << 18, DEFAULT_TOGETHER = 6, LEAST_TILE = 8 };
 
