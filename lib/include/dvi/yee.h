@@ -208,8 +208,8 @@ extern "C" {
  *  @retval DVI_NO_MEMORY        there is no memory */
 dvi_status dvi_yee_create(const dvi_yee_terms *terms, dvi_march **march);
 
-/** Return the number of values of a form, of the real ones, that this process has. 0 if the terms are
- *  not as described. */
+/** Return the number of values of a form, of the real ones, that this process has. 0 if the terms
+ *  are not as described. */
 int64_t dvi_yee_size(const dvi_yee_terms *terms, dvi_march_form form);
 
 /** Return the number of the cell of a form's component (0 to 2 for x to z) at the place
