@@ -114,7 +114,7 @@ static size_t count_charges(const dvi__yee *y)
 
 /* ---- save ---- */
 
-void dvi__yee_save(const void *self, dvi__sections_writer *writer)
+dvi_status dvi__yee_save(const void *self, dvi__sections_writer *writer)
 {
   const dvi__yee *y = self;
   const identity id = {hash_grid(y), y->dt, y->t0, y->t, y->step, y->charge != NULL};
@@ -132,9 +132,10 @@ void dvi__yee_save(const void *self, dvi__sections_writer *writer)
     const double sums[2] = {y->source[i].impulse, y->source[i].compensation};
     dvi__section_put(writer, sums, sizeof sums);
   }
-  if (y->charge == NULL) return;
+  if (y->charge == NULL) return DVI_OK;
   dvi__section_open(writer, "yee-charges", VERSION);
   dvi__section_put(writer, y->charge, count_charges(y) * sizeof(double));
+  return DVI_OK;
 }
 
 /* ---- load ---- */
