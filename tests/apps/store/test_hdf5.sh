@@ -210,6 +210,44 @@ says err "^dvi: 'named.csv' is a file of HDF5; give it a name that ends in .h5$"
 for scene in ring block; do
   expect 0 "frames of a $scene" run $scene.yaml --pvd $scene.vtkhdf --out $scene.h5
   expect 0 "a list of a $scene" run $scene.yaml --pvd $scene.pvd --out $scene.csv
+  expect 0 "a page of its list" view $scene.pvd --rows $scene.csv --title $scene --out listed.html
+  expect 0 "a page of its frames" view $scene.vtkhdf --rows $scene.h5 --title $scene \
+    --out stored.html
+  sed -i '/^"made":/d' listed.html stored.html
+  same listed.html stored.html "a page of a $scene"
+done
+expect 2 'no such field' view block.vtkhdf --field v --out x.html
+says err "no field 'v' among" 'no such field'
+for size in 100 3000 20000; do
+  head -c $size block.vtkhdf >cut.vtkhdf
+  expect 1 'fields that were cut' view cut.vtkhdf --out x.html
+  says err "^dvi: cannot read 'cut.vtkhdf': it is cut short$" 'fields that were cut'
+done
+cp rows.h5 rows.vtkhdf
+expect 1 'rows under a name of fields' view rows.vtkhdf --out x.html
+says err "^dvi: cannot read 'rows.vtkhdf': it has no 'VTKHDF'$" 'rows under a name of fields'
+cp rows.csv text.vtkhdf
+expect 1 'no HDF5' view text.vtkhdf --out x.html
+says err "^dvi: cannot read 'text.vtkhdf': it is no file of HDF5$" 'no HDF5'
+expect 1 'no fields' view nowhere.vtkhdf --out x.html
+[ ! -e x.html ] || fail 'a page without fields'
+"$python" - <<END
+import h5py
+for name, array, at, number in ("cell", "Connectivity", 3, 10**6), \
+        ("point", "Points", 0, float("nan")), ("kind", "Types", 0, 7), \
+        ("count", "NumberOfCells", 0, 10**12), \
+        ("offset", "Steps/PointOffsets", 0, -5), ("offset2", "Steps/CellDataOffsets/u", 0, 10**12):
+    with open("block.vtkhdf", "rb") as old, open(name + ".vtkhdf", "wb") as new:
+        new.write(old.read())
+    with h5py.File(name + ".vtkhdf", "r+") as file:
+        root = file["VTKHDF"]
+        if array not in root:
+            array = "Steps/PointDataOffsets/" + next(iter(root["PointData"]))
+        root[array][at] = number
+END
+for damaged in cell point kind count offset offset2; do
+  expect 1 "a damaged $damaged" view $damaged.vtkhdf --out x.html
+  says err "^dvi: cannot read '$damaged.vtkhdf': " "a damaged $damaged"
 done
 expect 1 'lines of fields' spectrum ring.vtkhdf
 says err "^dvi: 'ring.vtkhdf' has fields at the times of a run, and no rows" 'lines of fields'
