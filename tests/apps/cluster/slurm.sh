@@ -44,7 +44,7 @@ END
 #!/bin/sh
 #SBATCH --array=1-4
 #SBATCH --cpus-per-task=1
-dvi sweep cart.yaml --set l=0.2:1:64 --set m=0.2 --t-end 10 --threads 1 --part slurm --out l.csv
+dvi sweep $grid --threads 1 --part slurm --out l.csv
 END
 }
 
@@ -68,19 +68,47 @@ done
 sinfo
 rm -f *.csv* slurm-*.out
 dvi init cart.yaml 2>/dev/null || [ -e cart.yaml ]
-grid="cart.yaml --set l=0.2:1:64 --set m=0.2 --t-end 10"
-dvi sweep $grid --out l.csv
-mv l.csv whole.csv
-# Ids need not begin at 1.
-for ids in 1-4 3-10:2; do
-  rm -f l.csv*
-  array=$(sbatch --parsable --array=$ids sweep.sh)
-  sbatch --wait --dependency=afterany:"$array" \
-    --wrap "dvi sweep $grid --out l.csv --join l.csv.*-of-4"
+export grid="cart.yaml --set l=0.2:1:64 --set m=0.2 --t-end 10"
+
+# join ARRAY: join its parts when it is done, and compare the file with that of one machine.
+join() {
+  sbatch --wait --dependency=afterany:"$1" --wrap "dvi sweep $grid --out l.csv --join l.csv.*-of-4"
   cat slurm-*.out
   ls -l l.csv*
   cmp l.csv whole.csv
+  rm slurm-*.out
+}
+
+# Ids need not begin at 1.
+dvi sweep $grid --out whole.csv
+for ids in 1-4 3-10:2; do
+  rm -f l.csv*
+  join "$(sbatch --parsable --array=$ids sweep.sh)"
 done
+
+# A task that is killed goes on when it is queued again.
+grid="cart.yaml --set l=0.2:1:64 --set m=0.2 --t-end 1000"
+dvi sweep $grid --out whole.csv
+rm -f l.csv*
+array=$(sbatch --parsable --array=1-4 sweep.sh)
+for _ in $(seq 600); do
+  [ "$(cat l.csv.2-of-4 2>/dev/null | wc -l)" -ge 3 ] && break
+  sleep 0.05
+done
+for process in /proc/[0-9]*; do
+  [ "$(cat "$process/comm" 2>/dev/null)" = dvi.bin ] &&
+    grep -qz '^SLURM_ARRAY_TASK_ID=2$' "$process/environ" && kill -9 "${process#/proc/}"
+done
+for _ in $(seq 60); do
+  scontrol show job "${array}_2" | grep -q JobState=FAILED && break
+  sleep 0.5
+done
+scontrol requeue "${array}_2"
+# Slurm lets a task that failed rest for two minutes.
+scontrol update JobId="${array}_2" StartTime=now
+join "$array" >joined || { cat joined; exit 1; }
+cat joined
+grep -q 'of 16 points are in .l.csv.2-of-4. already' joined
 echo "$(($(wc -l <l.csv) - 1)) points by an array of $(ls l.csv.*-of-4 | wc -l): the same bytes"
 END
 }
@@ -114,7 +142,7 @@ inside() {
   install_dvi
   jobs_script >"$base/root/jobs.sh"
   code=0
-  timeout 120 chroot "$base" /usr/bin/env -i HOME=/root LANG=C.UTF-8 \
+  timeout 240 chroot "$base" /usr/bin/env -i HOME=/root LANG=C.UTF-8 \
     PATH=/usr/sbin:/usr/bin:/sbin:/bin sh /root/jobs.sh || code=$?
   [ "$code" -eq 0 ] || tail -n 5 "$base"/var/log/slurmctld.log "$base"/var/log/slurmd.log || true
   exit "$code"
@@ -131,7 +159,7 @@ for program in debootstrap unshare chroot ldd; do
 done
 release=$(sed -n 's/^VERSION_CODENAME=//p' /etc/os-release)
 grep -q '^ID=debian' /etc/os-release || skip 'no Debian, whose libraries the bare Debian shares'
-unshare --mount --pid --fork --uts --net true 2>/dev/null || skip 'no namespaces'
+unshare --mount --pid --fork --uts true 2>/dev/null || skip 'no namespaces'
 home=${DVI_SLURM_HOME:-${TMPDIR:-/tmp}/dvi-slurm-$release}
 base=$home/debian
 if [ ! -e "$home/done" ]; then
@@ -140,7 +168,7 @@ if [ ! -e "$home/done" ]; then
   mirror=$(cat /etc/apt/sources.list /etc/apt/sources.list.d/* 2>/dev/null |
     grep -oE 'https?://[^ ]+/debian/?( |$)' | head -n 1 | tr -d ' ')
   # shellcheck disable=SC2086
-  debootstrap --variant=minbase --include=slurm-wlm,munge,iproute2 "$release" "$base" $mirror \
+  debootstrap --variant=minbase --include=slurm-wlm,munge "$release" "$base" $mirror \
     >"$home/log" 2>&1 || { tail -n 3 "$home/log"; skip 'debootstrap failed'; }
   touch "$home/done"
 fi

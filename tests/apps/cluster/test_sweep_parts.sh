@@ -149,6 +149,14 @@ if parallel --version 2>/dev/null | grep -q '^GNU parallel'; then
     fail 'GNU parallel'
   expect 0 'joined' $cart --out p.csv --join p.csv.*-of-4
   same p.csv whole.csv 'parts by GNU parallel'
+  # Methods of an order study, of which only the process times differ.
+  study='order kepler --h 0.02 --levels 4 --t-end 1'
+  expect 0 'two methods' $study --method midpoint --method verlet --csv all.csv
+  HOME=$folder parallel --will-cite -j 2 "$dvi" $study --method {} --csv order-{#}.csv \
+    ::: midpoint verlet >out || fail 'orders by GNU parallel'
+  awk 'FNR > 1 || NR == 1' order-?.csv | cut -d, -f1-7,9- >joined
+  cut -d, -f1-7,9- all.csv >whole
+  same joined whole 'tables of methods by GNU parallel'
 else
   echo 'no GNU parallel (package parallel): parts are run one after the other only'
 fi

@@ -48,6 +48,10 @@ completes 'other.txt' 'rows of a run' ./dvi view oth
 completes 'kepler' 'a problem to view' ./dvi view kep
 completes 'other.txt' 'a page' ./dvi view kepler --out oth
 completes 'scene.yaml' 'the scene of rows' ./dvi view rows.csv --scene sce
+completes 'other.txt' 'one file of a list' ./dvi sweep kepler --join oth
+completes 'other.txt' 'another file of a list' ./dvi sweep kepler --join first.txt oth
+completes '--part' 'an option behind a list' ./dvi sweep kepler --join first.txt --p
+completes 'kepler' 'a problem behind a list' ./dvi sweep --join first.txt --h 0.1 kep
 completes 'methods' 'a list' ./dvi list met
 
 for line in '.SH SYNOPSIS' 'dvi plot FILE.csv|FILE.h5 --axes' '.SH EXAMPLES'; do
