@@ -83,8 +83,9 @@ static double displacement(const dvi__yee *y, int c, const int *place, int all, 
  * grid. */
 static const double *displacements_below(const dvi__yee *y, int all)
 {
-  const int c = y->divided, across = 3 - c;
+  const int c = y->divided;
   if (c < 0 || y->slot[c] < 0) return NULL;
+  const int across = c == 2 ? 1 : 2;
   double *sent = dvi__yee_plane_sent(y);
   int place[3] = {0, 0, 0};
   place[c] = dvi__yee_last_boxes(y);
