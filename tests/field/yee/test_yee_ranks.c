@@ -9,7 +9,7 @@
 #include "support/suite.h"
 #include "support/waves/boxes.h"
 
-enum { PROCESSES = 5, TRIALS = 30 };
+enum { PROCESSES = 5, TRIALS = 20 };
 
 typedef struct processes {
   const box_trial *trial;
@@ -149,6 +149,79 @@ START_TEST(a_failure_to_speak_is_told_until_a_start)
 }
 END_TEST
 
+/* ---- failures of one process ---- */
+
+/* A signal that fails after t = 2 where it is told so. */
+static int moody(double t, double *value, void *user)
+{
+  const int *fails = user;
+  *value = t * t;
+  return *fails && t > 2 ? 5 : 0;
+}
+
+static dvi_march *driven_march(const dvi_yee_ranks *ranks, int *fails)
+{
+  const dvi_yee_dipole dipole = {.at = {1.5, 4.2}, .along = {1, 2}, .signal = moody, .user = fails};
+  const dvi_yee_wave wave = {.lower = {1, 3},
+                             .upper = {2, 5},
+                             .direction = {0, 1},
+                             .polarization = {1, 0},
+                             .signal = moody,
+                             .user = fails};
+  dvi_yee_terms terms = {.size = sizeof terms,
+                         .axes = 2,
+                         .degree = 1,
+                         .axis = {{.cells = 3, .upper = 3}, {.cells = 8, .upper = 8}},
+                         .dipole = &dipole,
+                         .dipoles = 1,
+                         .wave = &wave,
+                         .waves = 1,
+                         .ranks = ranks};
+  dvi_march *march = NULL;
+  if (dvi_yee_create(&terms, &march) == DVI_OK)
+    (void)dvi_march_start(march, &(dvi_march_state){.size = sizeof(dvi_march_state)});
+  return march;
+}
+
+/* What processes tell of a failure of process 1, and the energy after they went on. */
+typedef struct moods {
+  dvi_status status[PROCESSES];
+  char sentence[PROCESSES][256];
+  double energy[PROCESSES];
+} moods;
+
+static void run_moody(const dvi_yee_ranks *ranks, void *user)
+{
+  moods *m = user;
+  int fails = ranks->rank == 1;
+  dvi_march *march = driven_march(ranks, &fails);
+  m->status[ranks->rank] = dvi_march_advance(march, 3);
+  (void)strncpy(m->sentence[ranks->rank], dvi_last_error(), 255);
+  fails = 0;
+  (void)dvi_march_advance(march, 3);
+  (void)dvi_march_observe(march, 0, &m->energy[ranks->rank]);
+  dvi_march_destroy(&march);
+}
+
+START_TEST(a_signal_that_fails_on_one_process_loses_nothing)
+{
+  int fails = 0;
+  moods m = {.energy = {0}};
+  dvi_march *march = driven_march(NULL, &fails);
+  double energy = 0;
+  ck_assert_int_eq(dvi_march_advance(march, 3), DVI_OK);
+  ck_assert_int_eq(dvi_march_observe(march, 0, &energy), DVI_OK);
+  dvi_march_destroy(&march);
+  run_box_ranks(3, run_moody, &m);
+  for (int r = 0; r < 3; r++) {
+    ck_assert_msg(m.status[r] == DVI_CALLBACK_FAILED, "%s", m.sentence[r]);
+    ck_assert(m.energy[r] == energy && energy > 0);
+    ck_assert_ptr_nonnull(
+        strstr(m.sentence[r], r == 1 ? "returned 5" : "another one of 3 processes failed"));
+  }
+}
+END_TEST
+
 SUITE(yee_ranks)
 {
   tcase_add_loop_test(tests, values_have_the_bits_of_one_process, 0, TRIALS);
@@ -156,4 +229,5 @@ SUITE(yee_ranks)
   tcase_add_test(tests, one_process_needs_no_other);
   tcase_add_test(tests, places_are_those_of_the_whole_grid);
   tcase_add_test(tests, a_failure_to_speak_is_told_until_a_start);
+  tcase_add_test(tests, a_signal_that_fails_on_one_process_loses_nothing);
 }

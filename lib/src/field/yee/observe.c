@@ -322,18 +322,21 @@ const char *dvi__yee_observable(const void *self, int i)
 dvi_status dvi__yee_observe(const void *self, int i, double *found)
 {
   const dvi__yee *y = self;
+  double seen = 0;
   DVI_TRY(dvi__yee_check_ranks(y));
   if (i >= FIXED) DVI_TRY(dvi__yee_set_moment(y));
   switch (i) {
-  case ENERGY: *found = energy_of(y); break;
-  case CHARGE: *found = visit_nodes(y, 0, NULL, NULL).sum; break;
-  case GAUSS: *found = gauss_of(y); break;
-  case DIVERGENCE: *found = divergence_of(y); break;
+  case ENERGY: seen = energy_of(y); break;
+  case CHARGE: seen = visit_nodes(y, 0, NULL, NULL).sum; break;
+  case GAUSS: seen = gauss_of(y); break;
+  case DIVERGENCE: seen = divergence_of(y); break;
   default:
-    *found = i - FIXED < y->probes ? probe_value(y->moment, &y->probe[i - FIXED])
-                                   : flux_value(y->moment, &y->flux[i - FIXED - y->probes]);
+    seen = i - FIXED < y->probes ? probe_value(y->moment, &y->probe[i - FIXED])
+                                 : flux_value(y->moment, &y->flux[i - FIXED - y->probes]);
   }
-  return dvi__yee_check_ranks(y);
+  DVI_TRY(dvi__yee_check_ranks(y));
+  *found = seen;
+  return DVI_OK;
 }
 
 /* ---- checks ---- */
