@@ -206,14 +206,15 @@ dvi_status dvi_series_write(const char *path, int64_t count, const double *time,
  *  common. A k-cell belongs to the owner of the first n-cell around it. Cells keep their order, and
  *  parts are those of the whole mesh, "boundary" as well. Fields and leapfrog take a share as they
  *  take a mesh. All processes make the same calls then, and have the digits of one process. What
- *  cannot be done with shares is refused with DVI_UNSUPPORTED.
+ *  cannot be done with shares is refused with DVI_UNSUPPORTED (docs/fields/shares.md). A failure of
+ *  one process is one of all, with the same status.
  *
  *  @param owner  [n-cells] the process to which each of them belongs. Each process owns a cell
  *  @param ranks  the processes. Copied
  *  @retval DVI_BAD_ARGUMENT  an owner is out of range, a process has no cell, or an argument is not
- *                            as described. The arguments are those of all processes, and the result
- *                            is the same on all
- *  @retval DVI_NO_MEMORY     there is no memory */
+ *                            as described. The arguments are those of all processes
+ *  @retval DVI_NO_MEMORY     there is no memory
+ *  @retval DVI_CALLBACK_FAILED  the processes cannot speak with each other */
 dvi_status dvi_mesh_cut(const dvi_mesh *mesh, const int *owner, const dvi_ranks *ranks,
                         dvi_mesh **share);
 

@@ -44,8 +44,19 @@ void dvi_march_destroy(dvi_march **march)
 static dvi_status check_started(const dvi_march *march)
 {
   if (march == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "march: a march is needed");
-  if (march->started) return DVI_OK;
-  return dvi__fail(DVI_BAD_STATE, "march: it has not been started; call dvi_march_start first");
+  if (!march->started)
+    return dvi__fail(DVI_BAD_STATE, "march: it has not been started; call dvi_march_start first");
+  if (march->kind->is_lost == NULL || !march->kind->is_lost(march->self)) return DVI_OK;
+  return dvi__fail(DVI_BAD_STATE,
+                   "march: its processes could not exchange their values; start it again, or load "
+                   "a saved state");
+}
+
+/* Agree with the other processes that march together, if there are any, whether all have succeeded
+ * so far. What is allowed to fail on one of them alone comes before. */
+static dvi_status agree(const dvi_march *march, dvi_status status)
+{
+  return march->kind->agree != NULL ? march->kind->agree(march->self, status) : status;
 }
 
 /* ---- motion ---- */
@@ -63,17 +74,22 @@ static dvi_status check_form(const dvi_march *march, dvi_march_form form, const 
   return DVI_OK;
 }
 
-dvi_status dvi_march_start(dvi_march *march, const dvi_march_state *state)
+static dvi_status check_state(const dvi_march *march, const dvi_march_state *state)
 {
-  if (march == NULL || state == NULL)
-    return dvi__fail(DVI_BAD_ARGUMENT, "march: a march and a start are needed");
   if (state->size != sizeof *state)
     return dvi__fail(DVI_BAD_ARGUMENT, "march: set state.size to sizeof(dvi_march_state)");
   if (!isfinite(state->t))
     return dvi__fail(DVI_BAD_ARGUMENT, "march: the start is at t = %g", state->t);
   DVI_TRY(check_form(march, DVI_FORM_A, state->A));
   DVI_TRY(check_form(march, DVI_FORM_E, state->E));
-  DVI_TRY(check_form(march, DVI_FORM_B, state->B));
+  return check_form(march, DVI_FORM_B, state->B);
+}
+
+dvi_status dvi_march_start(dvi_march *march, const dvi_march_state *state)
+{
+  if (march == NULL || state == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "march: a march and a start are needed");
+  DVI_TRY(agree(march, check_state(march, state)));
   DVI_TRY(march->kind->start(march->self, state));
   march->started = 1;
   return DVI_OK;
@@ -102,6 +118,16 @@ int64_t dvi_march_size(const dvi_march *march, dvi_march_form form)
   return march->kind->size(march->self, form);
 }
 
+static dvi_status check_values(const dvi_march *march, dvi_march_form form, int64_t count,
+                               const int *cell, const double *values)
+{
+  for (int64_t i = 0; i < count; i++)
+    if (!isfinite(values[i]))
+      return dvi__fail(DVI_NOT_FINITE, "march: %s is %g in cell %lld at t = %g", form_name[form],
+                       values[i], (long long)(cell != NULL ? cell[i] : i), dvi_march_time(march));
+  return DVI_OK;
+}
+
 dvi_status dvi_march_sample(const dvi_march *march, dvi_march_form form, int64_t count,
                             const int *cell, double *values)
 {
@@ -117,12 +143,9 @@ dvi_status dvi_march_sample(const dvi_march *march, dvi_march_form form, int64_t
       return dvi__fail(DVI_BAD_ARGUMENT, "march: cell %d is not from 0 to %lld", cell[i],
                        (long long)size - 1);
   if (cell == NULL) count = size;
-  DVI_TRY(march->kind->sample(march->self, form, count, cell, values));
-  for (int64_t i = 0; i < count; i++)
-    if (!isfinite(values[i]))
-      return dvi__fail(DVI_NOT_FINITE, "march: %s is %g in cell %lld at t = %g", form_name[form],
-                       values[i], (long long)(cell != NULL ? cell[i] : i), dvi_march_time(march));
-  return DVI_OK;
+  dvi_status status = march->kind->sample(march->self, form, count, cell, values);
+  if (status == DVI_OK) status = check_values(march, form, count, cell, values);
+  return cell == NULL ? agree(march, status) : status;
 }
 
 const char *dvi_march_observable(const dvi_march *march, int i)
@@ -156,22 +179,31 @@ void dvi_march_facts_of(const dvi_march *march, dvi_march_facts *facts)
 
 /* ---- states in files and in memory ---- */
 
-static dvi_status pack(const dvi_march *march, dvi__sections_writer *writer)
+/* Put the state together, on processes that do not keep it for the others alone. The caller releases
+ * the bytes, after a failure, too. */
+static dvi_status pack(const dvi_march *march, int keeps, dvi__sections_writer *writer)
 {
-  dvi__sections_start(writer, 1 << 12);
-  march->kind->save(march->self, writer);
-  return dvi__sections_finish(writer);
+  *writer = (dvi__sections_writer){.bytes = NULL};
+  if (keeps) dvi__sections_start(writer, 1 << 12);
+  DVI_TRY(march->kind->save(march->self, writer));
+  return keeps ? dvi__sections_finish(writer) : DVI_OK;
+}
+
+static dvi_status write(const dvi_march *march, const char *path)
+{
+  dvi__sections_writer writer;
+  const int writes = march->kind->writes == NULL || march->kind->writes(march->self);
+  dvi_status status = pack(march, writes, &writer);
+  if (status == DVI_OK && writes) status = dvi__write_whole(path, writer.bytes, writer.size);
+  dvi__release(writer.bytes);
+  return status;
 }
 
 dvi_status dvi_march_save(const dvi_march *march, const char *path)
 {
-  dvi__sections_writer writer;
   DVI_TRY(check_started(march));
   if (path == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "march: a file's name is needed");
-  DVI_TRY(pack(march, &writer));
-  const dvi_status status = dvi__write_whole(path, writer.bytes, writer.size);
-  dvi__release(writer.bytes);
-  return status;
+  return agree(march, write(march, path));
 }
 
 dvi_status dvi_march_save_memory(const dvi_march *march, void *bytes, size_t capacity, size_t *size)
@@ -179,11 +211,12 @@ dvi_status dvi_march_save_memory(const dvi_march *march, void *bytes, size_t cap
   dvi__sections_writer writer;
   DVI_TRY(check_started(march));
   if (size == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "march: a place for the size is needed");
-  DVI_TRY(pack(march, &writer));
-  const size_t needed = *size = writer.size;
-  if (bytes != NULL && needed <= capacity) memcpy(bytes, writer.bytes, needed);
+  const dvi_status status = agree(march, pack(march, 1, &writer));
+  const size_t needed = writer.size;
+  if (status == DVI_OK) *size = needed;
+  if (status == DVI_OK && bytes != NULL && needed <= capacity) memcpy(bytes, writer.bytes, needed);
   dvi__release(writer.bytes);
-  if (bytes == NULL || needed <= capacity) return DVI_OK;
+  if (status != DVI_OK || bytes == NULL || needed <= capacity) return status;
   return dvi__fail(DVI_BAD_SIZE, "march: %zu bytes of room for its state; %zu are needed", capacity,
                    needed);
 }
@@ -191,6 +224,7 @@ dvi_status dvi_march_save_memory(const dvi_march *march, void *bytes, size_t cap
 /* Take the state of sections whose reading has this status. */
 static dvi_status take_state(dvi_march *march, dvi__sections *sections, dvi_status status)
 {
+  status = agree(march, status);
   if (status == DVI_OK) status = march->kind->load(march->self, sections);
   dvi__sections_clear(sections);
   if (status == DVI_OK) march->started = 1;
@@ -215,9 +249,9 @@ dvi_status dvi_march_load_memory(dvi_march *march, const void *bytes, size_t siz
   if (march == NULL || bytes == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "march: a march and the bytes of its state are needed");
   sections.own = dvi__duplicate(bytes, size, 1);
-  if (sections.own == NULL)
-    return dvi__fail(DVI_NO_MEMORY, "march: no memory for a state of %zu bytes", size);
-  const dvi_status status = dvi__sections_check(&sections, "checkpoint in memory", sections.own,
-                                                size);
+  const dvi_status status =
+      sections.own != NULL
+          ? dvi__sections_check(&sections, "checkpoint in memory", sections.own, size)
+          : dvi__fail(DVI_NO_MEMORY, "march: no memory for a state of %zu bytes", size);
   return take_state(march, &sections, status);
 }

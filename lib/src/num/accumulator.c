@@ -75,7 +75,8 @@ void dvi__accumulate_terms(dvi__accumulator *sum, double *term)
   for (int level = 0; level < 3; level++) {
     int exponent;
     const double most = largest_size(count, term);
-    if (most == 0) return;
+    if (most == 0 && level > 0)
+      return; /* at first, zeros may be beside terms that are no numbers */
     if (!(most > 0x1p-900 && most < 0x1p900)) break;
     (void)frexp(most, &exponent);
     dvi__accumulate(sum, take_leading_bits(count, exponent, term));

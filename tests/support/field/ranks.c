@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { RANKS = 16, NUMBERS = 256 };
+enum { RANKS = 16, NUMBERS = 1 << 14 };
 
 /* What all threads see. */
 typedef struct board {

@@ -150,19 +150,26 @@ static dvi_status iterate(lanczos *s, double *bound)
   return DVI_OK;
 }
 
-static dvi_status run(lanczos *s, double *bound)
+/* Make the vectors in `room`, and the inverse. */
+static dvi_status prepare(lanczos *s, double **room)
 {
-  double *room = DVI_NEW(double, 6 * s->n);
-  if (room == NULL)
+  *room = DVI_NEW(double, 6 * s->n);
+  if (*room == NULL)
     return dvi__fail(DVI_NO_MEMORY, "modes: no memory for vectors of %lld numbers",
                      (long long)s->n);
   double **const vectors[] = {&s->q, &s->r, &s->Mq, &s->Mr, &s->last, &s->u};
-  for (int i = 0; i < 6; i++) *vectors[i] = room + i * s->n;
+  for (int i = 0; i < 6; i++) *vectors[i] = *room + i * s->n;
   s->inverse.is_diagonal = 1; /* a process may have no row */
-  dvi_status status = s->n > 0
-                          ? dvi__definite_create(s->pencil->M, s->pencil->dimension, &s->inverse)
-                          : DVI_OK;
+  if (s->n > 0) DVI_TRY(dvi__definite_create(s->pencil->M, s->pencil->dimension, &s->inverse));
   s->inverse.tolerance = tolerance_of_solutions;
+  return DVI_OK;
+}
+
+static dvi_status run(lanczos *s, double *bound)
+{
+  double *room = NULL;
+  dvi_status status = prepare(s, &room);
+  if (s->rows != NULL) status = s->rows->agree(s->rows->of, status);
   if (status == DVI_OK) status = iterate(s, bound);
   dvi__definite_clear(&s->inverse);
   dvi__release(room);

@@ -15,6 +15,8 @@ typedef struct dvi__rows {
   /* Give the sum, or the largest number, of all processes. */
   dvi_status (*sum)(void *of, dvi__accumulator *sum, double *value);
   dvi_status (*largest)(void *of, double *value);
+  /* Agree whether all processes have succeeded so far. */
+  dvi_status (*agree)(void *of, dvi_status status);
   void *of;
 } dvi__rows;
 

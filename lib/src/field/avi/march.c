@@ -234,9 +234,10 @@ static void facts(const void *self, dvi_march_facts *facts)
   dvi__avi_facts(((const march *)self)->avi, facts);
 }
 
-static void save(const void *self, dvi__sections_writer *writer)
+static dvi_status save(const void *self, dvi__sections_writer *writer)
 {
   dvi__avi_save(((const march *)self)->avi, writer);
+  return DVI_OK;
 }
 
 static dvi_status load(void *self, const dvi__sections *sections)

@@ -151,9 +151,10 @@ static void facts(const void *self, dvi_march_facts *facts)
   facts->updates = avi->clock.events;
 }
 
-static void save(const void *self, dvi__sections_writer *writer)
+static dvi_status save(const void *self, dvi__sections_writer *writer)
 {
   dvi__solid_avi_save(self, writer);
+  return DVI_OK;
 }
 
 static dvi_status load(void *self, const dvi__sections *sections)

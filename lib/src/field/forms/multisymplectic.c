@@ -11,6 +11,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "field/forms/star.h"
+#include "field/mesh/share.h"
 
 /* K, and the rows of two forms. */
 typedef struct formula {
@@ -33,7 +34,7 @@ static dvi_status check(const dvi_star *star, int k, int64_t cells, const int *c
     if (cell[i] < 0 || cell[i] >= mesh->count[mesh->n])
       return dvi__fail(DVI_BAD_ARGUMENT, "forms: cell %d is not from 0 to %lld", cell[i],
                        (long long)mesh->count[mesh->n] - 1);
-  return DVI_OK;
+  return dvi__refuse_share(mesh, "forms: the multisymplectic formula");
 }
 
 static dvi_status allocate(formula *f)

@@ -3,12 +3,14 @@
 #include "core/status.h"
 #include "field/algebra/conjugate.h"
 #include "field/forms/star.h"
+#include "field/mesh/share.h"
 
 static dvi_status check(const dvi_star *star, int k, int least, const void *result)
 {
   if (star == NULL || result == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "forms: the star and a place for the result are needed");
-  if (k >= least && k <= star->mesh->n) return DVI_OK;
+  if (k >= least && k <= star->mesh->n)
+    return dvi__refuse_share(star->mesh, "forms: an inverse of a star");
   return dvi__fail(DVI_BAD_ARGUMENT, "forms: degree %d is not from %d to %d", k, least,
                    star->mesh->n);
 }

@@ -5,6 +5,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "field/forms/gram.h"
+#include "field/mesh/share.h"
 
 /* ---- diagonals ---- */
 
@@ -94,11 +95,9 @@ static dvi_status make(dvi_star *star, const dvi_star_options *options)
   return invert_volumes(star);
 }
 
-dvi_status dvi_star_create(const dvi_mesh *mesh, const dvi_star_options *options, dvi_star **star)
+dvi_status dvi__star_create(const dvi_mesh *mesh, const dvi_star_options *options, dvi_star **star)
 {
   const dvi_star_options defaults = {.size = sizeof defaults};
-  if (mesh == NULL || star == NULL)
-    return dvi__fail(DVI_BAD_ARGUMENT, "star: mesh and star are needed");
   *star = NULL;
   if (options == NULL) options = &defaults;
   if (options->size != sizeof *options)
@@ -114,6 +113,15 @@ dvi_status dvi_star_create(const dvi_mesh *mesh, const dvi_star_options *options
     *star = made;
   else
     dvi_star_destroy(&made);
+  return status;
+}
+
+dvi_status dvi_star_create(const dvi_mesh *mesh, const dvi_star_options *options, dvi_star **star)
+{
+  if (mesh == NULL || star == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "star: mesh and star are needed");
+  const dvi_status status = dvi__agree(mesh, dvi__star_create(mesh, options, star));
+  if (status != DVI_OK) dvi_star_destroy(star);
   return status;
 }
 
@@ -187,7 +195,7 @@ dvi_status dvi__star_with_factor(const dvi_star *star, int k, const double *fact
   dvi_matrix M;
   factors[k] = factor;
   const dvi_star_options options = {.size = sizeof options, .kind = star->kind, .factor = factors};
-  dvi_status status = dvi_star_create(star->mesh, &options, &made);
+  dvi_status status = dvi__star_create(star->mesh, &options, &made);
   if (status == DVI_OK) status = dvi_star_matrix(made, k, &M);
   if (status == DVI_OK) status = dvi__csr_copy(&M, matrix);
   dvi_star_destroy(&made);

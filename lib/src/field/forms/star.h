@@ -19,6 +19,9 @@ struct dvi_star {
   dvi__csr matrix[DVI__DEGREES];
 };
 
+/* Create a star as dvi_star_create does, but without asking the other processes of a share. */
+dvi_status dvi__star_create(const dvi_mesh *mesh, const dvi_star_options *options, dvi_star **star);
+
 /* Make the diagonals and the duals of a circumcentric star. */
 dvi_status dvi__circumcentric_star(dvi_star *star);
 

@@ -287,7 +287,7 @@ dvi_status dvi_mesh_cut(const dvi_mesh *mesh, const int *owner, const dvi_ranks 
   DVI_TRY(check_ranks(ranks));
   DVI_TRY(dvi__refuse_share(mesh, "mesh: a cut"));
   cut c = {.whole = mesh, .owner = owner, .ranks = *ranks};
-  const dvi_status status = make(&c, share);
+  const dvi_status status = dvi__agree_among(ranks, make(&c, share));
   clear(&c);
   if (status != DVI_OK) dvi_mesh_destroy(share);
   return status;

@@ -35,42 +35,46 @@ int64_t dvi__find_number(const dvi_mesh *mesh, int k, int64_t number)
 
 /* ---- all processes ---- */
 
-static dvi_status check_call(const dvi__share *share, int failed)
+static dvi_status check_call(const dvi_ranks *ranks, int failed)
 {
   if (failed == 0) return DVI_OK;
   return dvi__fail(DVI_CALLBACK_FAILED,
-                   "mesh: process %d of %d could not speak with the others: code %d",
-                   share->ranks.rank, share->ranks.count, failed);
+                   "mesh: process %d of %d could not speak with the others: code %d", ranks->rank,
+                   ranks->count, failed);
 }
 
 dvi_status dvi__count_all(const dvi_mesh *mesh, int count, int64_t *number)
 {
   const dvi__share *s = mesh->share;
-  return s == NULL ? DVI_OK : check_call(s, s->ranks.sum(count, number, s->ranks.user));
+  return s == NULL ? DVI_OK : check_call(&s->ranks, s->ranks.sum(count, number, s->ranks.user));
 }
 
 dvi_status dvi__largest_of_all(const dvi_mesh *mesh, int count, double *number)
 {
   const dvi__share *s = mesh->share;
-  return s == NULL ? DVI_OK : check_call(s, s->ranks.largest(count, number, s->ranks.user));
+  return s == NULL ? DVI_OK : check_call(&s->ranks, s->ranks.largest(count, number, s->ranks.user));
 }
 
 dvi_status dvi__refresh(const dvi_mesh *mesh, int k, double *values)
 {
   const dvi__share *s = mesh->share;
-  return s == NULL ? DVI_OK : check_call(s, s->ranks.refresh(k, values, s->ranks.user));
+  return s == NULL ? DVI_OK : check_call(&s->ranks, s->ranks.refresh(k, values, s->ranks.user));
+}
+
+dvi_status dvi__agree_among(const dvi_ranks *ranks, dvi_status status)
+{
+  double extreme[2] = {status, -(double)status}; /* failures have numbers above or below 0 */
+  const dvi_status reached = check_call(ranks, ranks->largest(2, extreme, ranks->user));
+  if (reached != DVI_OK) return status != DVI_OK ? status : reached;
+  const dvi_status agreed = (dvi_status)(extreme[1] > 0 ? -extreme[1] : extreme[0]);
+  if (status != DVI_OK || agreed == DVI_OK) return agreed;
+  return dvi__fail(agreed, "mesh: another one of %d processes failed, and its sentence tells why",
+                   ranks->count);
 }
 
 dvi_status dvi__agree(const dvi_mesh *mesh, dvi_status status)
 {
-  int64_t failed = status != DVI_OK;
-  if (mesh->share == NULL) return status;
-  const dvi_status reached = dvi__count_all(mesh, 1, &failed);
-  if (status != DVI_OK || reached != DVI_OK) return status != DVI_OK ? status : reached;
-  return failed == 0 ? DVI_OK
-                     : dvi__fail(DVI_CALLBACK_FAILED,
-                                 "mesh: %lld of %d processes failed, whose sentences tell why",
-                                 (long long)failed, mesh->share->ranks.count);
+  return mesh->share == NULL ? status : dvi__agree_among(&mesh->share->ranks, status);
 }
 
 dvi_status dvi__sum_of_all(const dvi_mesh *mesh, dvi__accumulator *sum, double *value)

@@ -23,6 +23,12 @@ static inline int dvi__owns(const dvi_mesh *mesh, int k, int64_t cell)
   return mesh->share == NULL || mesh->share->owner[k][cell] == mesh->share->ranks.rank;
 }
 
+/* Tell whether this process speaks for all of them, as when a file is written. */
+static inline int dvi__is_first(const dvi_mesh *mesh)
+{
+  return mesh->share == NULL || mesh->share->ranks.rank == 0;
+}
+
 /* Return the number of a k-cell in the whole mesh, and how many there are. */
 static inline int64_t dvi__whole_number(const dvi_mesh *mesh, int k, int64_t cell)
 {
@@ -42,8 +48,12 @@ int64_t dvi__find_number(const dvi_mesh *mesh, int k, int64_t number);
 /* The following functions are called on all processes. DVI_CALLBACK_FAILED on all of them if one
  * cannot speak with the others. They do nothing else on a whole mesh. */
 
-/* Agree whether all have succeeded so far. If not, those that have fail, too. */
+/* Agree whether all have succeeded so far. If not, all fail with the same status. Whatever may fail
+ * on one process alone is agreed on before the next call of a function of this list. */
 dvi_status dvi__agree(const dvi_mesh *mesh, dvi_status status);
+
+/* The same for processes without meshes. */
+dvi_status dvi__agree_among(const dvi_ranks *ranks, dvi_status status);
 
 /* Set the values [k-cells] of cells that others own to theirs. */
 dvi_status dvi__refresh(const dvi_mesh *mesh, int k, double *values);

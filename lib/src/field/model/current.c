@@ -64,12 +64,16 @@ static dvi_status make_current(const dvi_field *field, const dvi_current *from, 
   if (from->signal == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "maxwell: a current has no signal");
   *current = (dvi__current){.signal = from->signal, .impulse = from->impulse, .user = from->user};
   double *profile = DVI_NEW(double, field->unknowns);
-  if (profile == NULL) return dvi__fail(DVI_NO_MEMORY, "maxwell: no memory for a current");
-  dvi_status status = from->density != NULL ? spread_density(field, from, W, profile)
-                                            : place_dipole(field, from, profile);
+  dvi_status status = profile != NULL
+                          ? DVI_OK
+                          : dvi__fail(DVI_NO_MEMORY, "maxwell: no memory for a current");
+  status = dvi__agree(field->mesh, status);
+  if (status == DVI_OK)
+    status = from->density != NULL ? spread_density(field, from, W, profile)
+                                   : place_dipole(field, from, profile);
   if (status == DVI_OK) status = keep_entries(field->unknowns, profile, current);
   dvi__release(profile);
-  return status;
+  return dvi__agree(field->mesh, status);
 }
 
 static int has_density(const dvi_maxwell_terms *terms)
@@ -79,19 +83,24 @@ static int has_density(const dvi_maxwell_terms *terms)
   return 0;
 }
 
+/* Make room, and the star without a material if it is needed. */
+static dvi_status prepare_currents(dvi_field *field, const dvi_maxwell_terms *terms, dvi__csr *bare)
+{
+  field->current = DVI_NEW(dvi__current, terms->currents);
+  if (field->current == NULL) return dvi__fail(DVI_NO_MEMORY, "maxwell: no memory for currents");
+  return has_density(terms) ? dvi__star_with_factor(field->star, field->degree, NULL, bare)
+                            : DVI_OK;
+}
+
 dvi_status dvi__maxwell_make_currents(dvi_field *field, const dvi_maxwell_terms *terms)
 {
   dvi__csr bare = {0};
   if (terms->currents == 0) return DVI_OK;
-  field->current = DVI_NEW(dvi__current, terms->currents);
-  if (field->current == NULL) return dvi__fail(DVI_NO_MEMORY, "maxwell: no memory for currents");
-  if (has_density(terms)) DVI_TRY(dvi__star_with_factor(field->star, field->degree, NULL, &bare));
+  dvi_status status = dvi__agree(field->mesh, prepare_currents(field, terms, &bare));
   const dvi_matrix W = dvi__csr_view(&bare, 1);
-  dvi_status status = DVI_OK;
   while (status == DVI_OK && field->currents < terms->currents) {
     const int i = field->currents++;
-    status = dvi__agree(field->mesh,
-                        make_current(field, terms->current + i, &W, field->current + i));
+    status = make_current(field, terms->current + i, &W, field->current + i);
   }
   dvi__csr_clear(&bare);
   return status;

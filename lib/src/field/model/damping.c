@@ -212,7 +212,7 @@ static dvi_status make_walls(dvi_field *field, const dvi_maxwell_terms *terms, d
   dvi_status status = dvi__agree(field->mesh, allocate(&r));
   for (int i = 0; i < terms->walls && status == DVI_OK; i++)
     if (terms->wall[i].kind == DVI_ABSORBING) status = mark_wall(&r, terms->wall + i);
-  if (status == DVI_OK) status = make_rim_matrix(&r, damping);
+  if (status == DVI_OK) status = dvi__agree(field->mesh, make_rim_matrix(&r, damping));
   clear_rim(&r);
   return status;
 }
@@ -257,8 +257,10 @@ static dvi_status check_damping(dvi_field *field)
 {
   dvi__csr *S = &field->damping;
   double most = 0;
-  if (S->rows == 0 || !field->mass_is_diagonal) return DVI_OK;
-  for (int64_t e = 0; e < S->start[S->rows]; e++) most = fmax(most, S->value[e]);
+  if (!field->is_damped || !field->mass_is_diagonal) return DVI_OK;
+  for (int64_t e = 0; e < S->start[S->rows]; e++)
+    if (dvi__owns(field->mesh, field->degree, field->unknown[S->column[e]]))
+      most = fmax(most, S->value[e]);
   DVI_TRY(dvi__largest_of_all(field->mesh, 1, &most));
   for (int64_t e = 0; e < S->start[S->rows]; e++) {
     if (S->value[e] >= 0) continue;
@@ -283,10 +285,11 @@ static dvi_status make_damping(dvi_field *field, const dvi_maxwell_terms *terms)
   if (status == DVI_OK && terms->conductivity != NULL)
     status = make_conductors(field, terms->conductivity, &conductors);
   const dvi_matrix a = dvi__csr_view(&walls, 1), b = dvi__csr_view(&conductors, 1);
-  if (status == DVI_OK && walls.rows > 0 && conductors.rows > 0) {
+  field->is_damped = walls.start != NULL || conductors.start != NULL;
+  if (status == DVI_OK && walls.start != NULL && conductors.start != NULL) {
     status = dvi__csr_sum(&a, &b, &field->damping);
   } else if (status == DVI_OK) {
-    field->damping = walls.rows > 0 ? walls : conductors;
+    field->damping = walls.start != NULL ? walls : conductors;
     return status;
   }
   dvi__csr_clear(&walls);

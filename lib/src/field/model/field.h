@@ -74,6 +74,7 @@ struct dvi_field {
   int64_t components;     /* without a fixed value */
   dvi__csr mass, stiffness;
   dvi__csr damping;     /* S of the current S E. Without rows if there is none */
+  int is_damped;        /* there is one, perhaps with rows on other processes alone */
   int mass_is_diagonal; /* the damping is then diagonal, too */
   dvi__current *current;
   int currents;

@@ -197,9 +197,10 @@ static dvi_status add_facet(const facet *f)
 /* ---- conditions ---- */
 
 /* A part of n-cells stands for its facets on the boundary. Facets inside are an error elsewhere. */
-static dvi_status check_facets(const dvi_mesh *mesh, const char *part, const int *number,
-                               int64_t here)
+static dvi_status check_facets(const dvi_mesh *mesh, const char *part)
 {
+  int64_t here;
+  const int *number = dvi_mesh_part_cells(mesh, part, mesh->n - 1, &here);
   const int64_t count = dvi__part_total(mesh, part, mesh->n - 1),
                 cells = dvi__part_total(mesh, part, mesh->n);
   int64_t outside = 0;
@@ -221,7 +222,6 @@ static dvi_status add_condition(const dvi_field *field, const dvi_condition *con
   int64_t count;
   facet f = {.field = field, .condition = condition, .rule = rule, .b = b};
   const int *number = dvi_mesh_part_cells(mesh, condition->part, mesh->n - 1, &count);
-  DVI_TRY(check_facets(mesh, condition->part, number, count));
   for (int64_t i = 0; i < count; i++) {
     if (mesh->coface[2 * (int64_t)number[i] + 1] >= 0) continue;
     place_facet(&f, number[i]);
@@ -235,7 +235,9 @@ dvi_status dvi__field_add_fluxes(const dvi_field *field, const dvi_wave_terms *t
   dvi__rule rule;
   DVI_TRY(dvi__rule_make(&rule));
   for (int i = 0; i < terms->conditions; i++)
-    if (terms->condition[i].kind == DVI_FREE && terms->condition[i].datum != NULL)
-      DVI_TRY(add_condition(field, terms->condition + i, &rule, b));
+    if (terms->condition[i].kind == DVI_FREE && terms->condition[i].datum != NULL) {
+      DVI_TRY(check_facets(field->mesh, terms->condition[i].part));
+      DVI_TRY(dvi__agree(field->mesh, add_condition(field, terms->condition + i, &rule, b)));
+    }
   return DVI_OK;
 }

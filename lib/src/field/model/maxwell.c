@@ -136,6 +136,7 @@ static dvi_status make_matrices(dvi_field *field)
                           ? DVI_OK
                           : dvi__fail(DVI_NO_MEMORY, "maxwell: no memory for %lld unknowns",
                                       (long long)field->unknowns);
+  status = dvi__agree(field->mesh, status);
   if (status == DVI_OK) status = dvi__field_make_matrices(field, pull);
   dvi__release(pull);
   return status;
@@ -154,7 +155,7 @@ static dvi_status make(dvi_field *field, const dvi_maxwell_terms *terms)
     status = check_factors(field, k);
   DVI_TRY(dvi__agree(field->mesh, status));
   DVI_TRY(make_matrices(field));
-  if (field->degree == 0) DVI_TRY(dvi__field_find_components(field));
+  if (field->degree == 0) DVI_TRY(dvi__agree(field->mesh, dvi__field_find_components(field)));
   DVI_TRY(dvi__agree(field->mesh, dvi__maxwell_make_damping(field, terms)));
   DVI_TRY(dvi__maxwell_make_currents(field, terms));
   return dvi__maxwell_make_probes(field, terms);
@@ -167,8 +168,9 @@ dvi_status dvi_maxwell_create(const dvi_maxwell_terms *terms, dvi_field **field)
   *field = NULL;
   DVI_TRY(check_terms(terms));
   dvi_field *f = DVI_NEW(dvi_field, 1);
-  if (f == NULL) return dvi__fail(DVI_NO_MEMORY, "maxwell: no memory");
-  const dvi_status status = make(f, terms);
+  dvi_status status = f != NULL ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "maxwell: no memory");
+  status = dvi__agree(terms->star->mesh, status);
+  if (status == DVI_OK) status = make(f, terms);
   *field = f;
   if (status != DVI_OK) dvi_field_destroy(field);
   return status;

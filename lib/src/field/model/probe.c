@@ -35,19 +35,21 @@ dvi_status dvi__functional_make(const dvi_mesh *mesh, int k, int64_t cell, const
   return DVI_OK;
 }
 
-/* Find the first n-cell of the whole mesh at a point. Only its owner knows that it is the first
- * one. The number is that in the whole mesh, or -1. */
+/* Find the first n-cell of the whole mesh at a point. Its owner has it before all others there, and
+ * another process may have a later one where cells meet without common vertices. The number is that
+ * in the whole mesh, or -1. */
 static dvi_status find_first_cell(const dvi_mesh *mesh, const double *at, double *place,
                                   int64_t *number)
 {
   int cell = -1;
   const dvi_status status = dvi_mesh_locate(mesh, 1, at, &cell, place);
-  double found = cell >= 0 && dvi__owns(mesh, mesh->n, cell)
-                     ? (double)dvi__whole_number(mesh, mesh->n, cell)
-                     : -1;
+  const int64_t total = dvi__whole_count(mesh, mesh->n);
+  double behind = cell >= 0 && dvi__owns(mesh, mesh->n, cell)
+                      ? (double)(total - dvi__whole_number(mesh, mesh->n, cell))
+                      : 0; /* the more the earlier the cell comes */
   DVI_TRY(dvi__agree(mesh, status));
-  DVI_TRY(dvi__largest_of_all(mesh, 1, &found));
-  *number = (int64_t)found;
+  DVI_TRY(dvi__largest_of_all(mesh, 1, &behind));
+  *number = behind > 0 ? total - (int64_t)behind : -1;
   return DVI_OK;
 }
 
@@ -139,24 +141,38 @@ static dvi_status make_value(const dvi_field *field, const dvi_field_probe *from
                             &probe->value);
 }
 
+/* Add a probe by its name. */
+static dvi_status name_probe(dvi_field *field, const dvi_field_probe *from)
+{
+  DVI_TRY(check(field, from));
+  dvi__probe *made = field->probe + field->probes++;
+  made->name = dvi__duplicate(from->name, strlen(from->name) + 1, 1);
+  if (made->name == NULL) return dvi__fail(DVI_NO_MEMORY, "field: no memory for probes");
+  made->kind = *from->of == 'f'   ? DVI__PROBE_FLUX
+               : *from->of == 'e' ? DVI__PROBE_ENERGY
+                                  : DVI__PROBE_VALUE;
+  return DVI_OK;
+}
+
+static dvi_status make_probe(dvi_field *field, const dvi_maxwell_terms *terms, int i)
+{
+  const dvi_field_probe *from = terms->probe + i;
+  dvi__probe *made = field->probe + i;
+  if (made->kind == DVI__PROBE_FLUX) return dvi__probe_make_flux(field, terms, from->part, made);
+  return made->kind == DVI__PROBE_ENERGY ? make_energy(field, from->part, made)
+                                         : make_value(field, from, made);
+}
+
 dvi_status dvi__maxwell_make_probes(dvi_field *field, const dvi_maxwell_terms *terms)
 {
-  const dvi_field_probe *probe = terms->probe;
-  const int count = terms->probes;
-  if (count == 0) return DVI_OK;
-  field->probe = DVI_NEW(dvi__probe, count);
-  if (field->probe == NULL) return dvi__fail(DVI_NO_MEMORY, "field: no memory for probes");
-  for (int i = 0; i < count; i++) {
-    DVI_TRY(check(field, probe + i));
-    dvi__probe *made = field->probe + field->probes++;
-    made->name = dvi__duplicate(probe[i].name, strlen(probe[i].name) + 1, 1);
-    if (made->name == NULL) return dvi__fail(DVI_NO_MEMORY, "field: no memory for probes");
-    made->kind = *probe[i].of == 'f'   ? DVI__PROBE_FLUX
-                 : *probe[i].of == 'e' ? DVI__PROBE_ENERGY
-                                       : DVI__PROBE_VALUE;
-    DVI_TRY(made->kind == DVI__PROBE_FLUX ? dvi__probe_make_flux(field, terms, probe[i].part, made)
-            : made->kind == DVI__PROBE_ENERGY ? make_energy(field, probe[i].part, made)
-                                              : make_value(field, probe + i, made));
+  if (terms->probes == 0) return DVI_OK;
+  field->probe = DVI_NEW(dvi__probe, terms->probes);
+  DVI_TRY(dvi__agree(field->mesh, field->probe != NULL
+                                      ? DVI_OK
+                                      : dvi__fail(DVI_NO_MEMORY, "field: no memory for probes")));
+  for (int i = 0; i < terms->probes; i++) {
+    DVI_TRY(dvi__agree(field->mesh, name_probe(field, terms->probe + i)));
+    DVI_TRY(dvi__agree(field->mesh, make_probe(field, terms, i)));
   }
   return DVI_OK;
 }

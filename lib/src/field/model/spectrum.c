@@ -165,6 +165,11 @@ static dvi_status find_largest(void *of, double *value)
   return dvi__largest_of_all(((const unknowns *)of)->field->mesh, 1, value);
 }
 
+static dvi_status agree(void *of, dvi_status status)
+{
+  return dvi__agree(((const unknowns *)of)->field->mesh, status);
+}
+
 static dvi_status prepare_unknowns(const dvi_field *f, unknowns *u)
 {
   *u = (unknowns){.field = f,
@@ -194,6 +199,7 @@ static dvi_status find_fastest(const dvi_field *field, double *bound)
                           .refresh = refresh_unknowns,
                           .sum = sum_up,
                           .largest = find_largest,
+                          .agree = agree,
                           .of = &u};
   if (status == DVI_OK) status = dvi__largest_eigenvalue(&pencil, &rows, bound);
   dvi__release(u.number);

@@ -68,18 +68,33 @@ static dvi_status add_source(dvi_field *field, const dvi_wave_terms *terms, cons
 }
 
 /* W is M_0 without a density. */
-static dvi_status add_loads(dvi_field *field, const dvi_wave_terms *terms, double *load)
+static dvi_status add_sources(dvi_field *field, const dvi_wave_terms *terms, double *load)
 {
   const dvi_star_options plain = {.size = sizeof plain, .kind = field->star->kind};
   dvi_star *bare = NULL;
   dvi_matrix W;
   dvi_status status = DVI_OK;
-  if (field->star->factor[0] != NULL) status = dvi_star_create(field->mesh, &plain, &bare);
+  if (field->star->factor[0] != NULL) status = dvi__star_create(field->mesh, &plain, &bare);
   if (status == DVI_OK) status = dvi_star_matrix(bare != NULL ? bare : field->star, 0, &W);
   if (status == DVI_OK) status = add_source(field, terms, &W, load);
-  if (status == DVI_OK) status = dvi__field_add_fluxes(field, terms, load);
   dvi_star_destroy(&bare);
   return status;
+}
+
+/* Take the load of the unknowns, and the energy of the fixed values. */
+static dvi_status take_load(dvi_field *field, const double *load)
+{
+  const int space = field->mesh->space;
+  for (int64_t v = 0; v < field->cells; v++) field->rest -= field->fixed[v] * load[v];
+  for (int64_t i = 0; i < field->unknowns; i++) {
+    const int64_t v = field->unknown[i];
+    field->load[i] = load[v];
+    DVI_TRY(
+        dvi__field_check_datum(field, "sum of source, flux and fixed values", 0, load[v], 0, v));
+    memcpy(field->point + i * space, field->mesh->point + v * space,
+           (size_t)space * sizeof(double));
+  }
+  return DVI_OK;
 }
 
 static dvi_status make_equations(dvi_field *field, const dvi_wave_terms *terms)
@@ -93,18 +108,11 @@ static dvi_status make_equations(dvi_field *field, const dvi_wave_terms *terms)
                           ? DVI_OK
                           : dvi__fail(DVI_NO_MEMORY, "field: no memory for %lld unknowns",
                                       (long long)field->unknowns);
+  status = dvi__agree(field->mesh, status);
   if (status == DVI_OK) status = dvi__field_make_matrices(field, load);
-  if (status == DVI_OK) status = add_loads(field, terms, load);
-  for (int64_t v = 0; v < field->cells && status == DVI_OK; v++)
-    field->rest -= field->fixed[v] * load[v];
-  for (int64_t i = 0; i < field->unknowns && status == DVI_OK; i++) {
-    const int64_t v = field->unknown[i];
-    field->load[i] = load[v];
-    status = dvi__field_check_datum(field, "sum of source, flux and fixed values", 0, load[v], 0,
-                                    v);
-    memcpy(field->point + i * space, field->mesh->point + v * space,
-           (size_t)space * sizeof(double));
-  }
+  if (status == DVI_OK) status = dvi__agree(field->mesh, add_sources(field, terms, load));
+  if (status == DVI_OK) status = dvi__field_add_fluxes(field, terms, load);
+  if (status == DVI_OK) status = dvi__agree(field->mesh, take_load(field, load));
   dvi__release(load);
   return status;
 }
@@ -119,8 +127,8 @@ static dvi_status make(dvi_field *field, const dvi_wave_terms *terms)
   field->is_wave = 1;
   if (terms->potential != NULL) field->potential = *terms->potential;
   DVI_TRY(dvi__field_fix(field, terms));
-  DVI_TRY(dvi__agree(field->mesh, make_equations(field, terms)));
-  return dvi__field_find_components(field);
+  DVI_TRY(make_equations(field, terms));
+  return dvi__agree(field->mesh, dvi__field_find_components(field));
 }
 
 dvi_status dvi_wave_create(const dvi_wave_terms *terms, dvi_field **field)
@@ -130,8 +138,9 @@ dvi_status dvi_wave_create(const dvi_wave_terms *terms, dvi_field **field)
   *field = NULL;
   DVI_TRY(check_terms(terms));
   dvi_field *f = DVI_NEW(dvi_field, 1);
-  if (f == NULL) return dvi__fail(DVI_NO_MEMORY, "field: no memory");
-  const dvi_status status = make(f, terms);
+  dvi_status status = f != NULL ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "field: no memory");
+  status = dvi__agree(terms->star->mesh, status);
+  if (status == DVI_OK) status = make(f, terms);
   *field = f;
   if (status != DVI_OK) dvi_field_destroy(field);
   return status;

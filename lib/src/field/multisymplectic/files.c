@@ -56,7 +56,7 @@ static uint64_t hash_lattice(const dvi__lattice *lattice)
   return hash_density(lattice, hash_axes(lattice, DVI__HASH_START));
 }
 
-void dvi__lattice_save(const void *self, dvi__sections_writer *writer)
+dvi_status dvi__lattice_save(const void *self, dvi__sections_writer *writer)
 {
   const dvi__lattice_march *m = self;
   const size_t bytes = (size_t)m->lattice.size * sizeof(double);
@@ -70,6 +70,7 @@ void dvi__lattice_save(const void *self, dvi__sections_writer *writer)
   for (int i = 0; i < LEVELS; i++) dvi__section_put(writer, levels[i], bytes);
   dvi__section_open(writer, "ms-matrix", VERSION);
   for (int i = 0; i < MATRIX; i++) dvi__section_put(writer, factored[i], bytes);
+  return DVI_OK;
 }
 
 /* Compute the matrix where it was computed, or where it is if that fails. */

@@ -46,7 +46,7 @@ dvi_status dvi__lattice_step(dvi__lattice_march *m);
 int dvi__lattice_observables(const void *self);
 const char *dvi__lattice_observable(const void *self, int i);
 dvi_status dvi__lattice_observe(const void *self, int i, double *value);
-void dvi__lattice_save(const void *self, dvi__sections_writer *writer);
+dvi_status dvi__lattice_save(const void *self, dvi__sections_writer *writer);
 dvi_status dvi__lattice_load(void *self, const dvi__sections *sections);
 
 #endif

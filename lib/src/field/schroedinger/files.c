@@ -37,7 +37,7 @@ static uint64_t hash_equation(const dvi__wave_march *m)
   return hash_numbers(hash, s->T.start[s->free], s->T.value);
 }
 
-void dvi__wave_save(const void *self, dvi__sections_writer *writer)
+dvi_status dvi__wave_save(const void *self, dvi__sections_writer *writer)
 {
   const dvi__wave_march *m = self;
   const identity id = {hash_equation(m), m->dt, m->t0, m->t, m->step};
@@ -47,6 +47,7 @@ void dvi__wave_save(const void *self, dvi__sections_writer *writer)
   dvi__section_open(writer, "psi", VERSION);
   dvi__section_put(writer, m->z, size);
   dvi__section_put(writer, m->compensation, size);
+  return DVI_OK;
 }
 
 static dvi_status find_identity(const dvi__wave_march *m, const dvi__sections *sections,

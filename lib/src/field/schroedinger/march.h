@@ -57,7 +57,7 @@ const char *dvi__wave_observable(const void *self, int i);
 dvi_status dvi__wave_observe(const void *self, int i, double *value);
 
 /* Files, files.c. */
-void dvi__wave_save(const void *self, dvi__sections_writer *writer);
+dvi_status dvi__wave_save(const void *self, dvi__sections_writer *writer);
 dvi_status dvi__wave_load(void *self, const dvi__sections *sections);
 
 #endif

@@ -18,18 +18,18 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/hash.h"
 #include "core/memory.h"
 #include "core/status.h"
 #include "field/algebra/conjugate.h"
 #include "field/mesh/share.h"
 #include "field/step/observables.h"
+#include "field/step/saved.h"
 #include "field/step/source.h"
 #include "field/step/sweep.h"
 
 /* What identifies a march in a file, and where it stands. */
 typedef struct place {
-  int64_t cells, faces, n;
+  int64_t n;
   uint64_t hash; /* of the coefficients */
   double dt, t0, t;
 } place;
@@ -62,6 +62,7 @@ typedef struct leapfrog {
   double *spare;       /* [cells + 2*faces] */
   double *change;      /* [cells] of stars that are not diagonal, E' at t_n once it is needed */
   int64_t changed;     /* that n, or -1 */
+  int is_lost;         /* processes could not give each other their values */
   dvi__charge charge;
   solver solver;
 } leapfrog;
@@ -168,11 +169,11 @@ static dvi_status kick_by_solution(leapfrog *l)
   return DVI_OK;
 }
 
-/* A solution that fails leaves the state as it was. */
+/* A solution that fails leaves the state as it was. Values that do not arrive leave none. */
 static dvi_status step(leapfrog *l)
 {
   dvi_status status = DVI_OK;
-  DVI_TRY(find_impulses(l));
+  if (l->field->currents > 0) DVI_TRY(dvi__agree(l->field->mesh, find_impulses(l)));
   if (l->gain == NULL) memcpy(l->solver.kept, l->state, (size_t)l->numbers * sizeof *l->state);
   drift(l);
   if (l->gain != NULL)
@@ -180,6 +181,7 @@ static dvi_status step(leapfrog *l)
   else
     status = kick_by_solution(l);
   l->at.n += status == DVI_OK;
+  l->is_lost = status != DVI_OK && l->gain != NULL;
   if (status != DVI_OK && l->gain == NULL)
     memcpy(l->state, l->solver.kept, (size_t)l->numbers * sizeof *l->state);
   return status;
@@ -214,11 +216,11 @@ static dvi_status find_first_currents(leapfrog *l)
   return DVI_OK;
 }
 
-/* Take what is given, and B = dA otherwise. */
-static void take(leapfrog *l, const dvi_march_state *state)
+/* Take what is given, of each cell by its owner, and B = dA otherwise. */
+static dvi_status take(leapfrog *l, const dvi_march_state *state)
 {
   const dvi_field *f = l->field;
-  double *A = l->A != NULL ? l->A : l->spare;
+  double *A = l->A != NULL ? l->A : l->spare, *B = l->spare + f->cells;
   memset(l->state, 0, (size_t)l->numbers * sizeof *l->state);
   memcpy(A, f->fixed, (size_t)f->cells * sizeof *A);
   for (int64_t i = 0; i < f->unknowns; i++) {
@@ -226,9 +228,13 @@ static void take(leapfrog *l, const dvi_march_state *state)
     if (state->A != NULL) A[c] = state->A[c];
     if (state->E != NULL) l->E[c] = state->E[c];
   }
-  for (int64_t b = 0; b < l->sweep.faces; b++)
-    l->H[b] = l->sweep.weight[b] * (state->B != NULL ? state->B[b] : dvi__sweep_d(&l->sweep, b, A));
   for (int c = 0; c < f->currents; c++) l->J[c] = l->impulse[c];
+  DVI_TRY(dvi__refresh(f->mesh, f->degree, A));
+  for (int64_t b = 0; b < l->sweep.faces; b++)
+    B[b] = state->B != NULL ? state->B[b] : dvi__sweep_d(&l->sweep, b, A);
+  DVI_TRY(dvi__refresh(f->mesh, f->degree + 1, B));
+  for (int64_t b = 0; b < l->sweep.faces; b++) l->H[b] = l->sweep.weight[b] * B[b];
+  return DVI_OK;
 }
 
 /* Set E^{1/2} = E^0 + dt/2 M^-1 (d^T M_{k+1} B^0 - J^0 - S E^{1/2}). */
@@ -255,7 +261,7 @@ static dvi_status half_kick(leapfrog *l)
 /* Whether damping moves charge. */
 static int moves_charge(const dvi_field *field)
 {
-  return field->degree > 0 && field->damping.rows > 0;
+  return field->degree > 0 && field->is_damped;
 }
 
 /* Give the integral of E up to t_{n+1/2}, or NULL without damping: S times its change is the charge
@@ -273,12 +279,14 @@ static dvi_status start(void *self, const dvi_march_state *state)
   const place before = l->at;
   l->at.t0 = l->at.t = state->t;
   l->at.n = 0;
-  dvi_status status = find_first_currents(l);
+  dvi_status status = dvi__agree(l->field->mesh, find_first_currents(l));
   if (status == DVI_OK) {
     if (l->gain == NULL) memcpy(l->solver.kept, l->state, (size_t)l->numbers * sizeof(double));
-    take(l, state);
-    status = half_kick(l);
-    if (status != DVI_OK) memcpy(l->state, l->solver.kept, (size_t)l->numbers * sizeof(double));
+    status = take(l, state);
+    if (status == DVI_OK) status = half_kick(l);
+    l->is_lost = status != DVI_OK && l->gain != NULL;
+    if (status != DVI_OK && l->gain == NULL)
+      memcpy(l->state, l->solver.kept, (size_t)l->numbers * sizeof(double));
   }
   if (status != DVI_OK) l->at = before;
   if (status == DVI_OK) dvi__charge_start(&l->charge, l->E, integral_of_E(l));
@@ -341,6 +349,28 @@ static dvi_status sample(const void *self, dvi_march_form form, int64_t count, c
   return DVI_OK;
 }
 
+/* Of a share, E at cells around which not all n-cells are here is known by their owners alone. */
+static dvi_status check_owners(const leapfrog *l, int64_t count, const int *cell)
+{
+  const dvi_field *f = l->field;
+  for (int64_t i = 0; i < count; i++)
+    if (!dvi__owns(f->mesh, f->degree, cell[i]))
+      return dvi__fail(DVI_BAD_ARGUMENT,
+                       "march: E in cell %d belongs to another process: ask for all cells",
+                       cell[i]);
+  return DVI_OK;
+}
+
+static dvi_status show(const void *self, dvi_march_form form, int64_t count, const int *cell,
+                       double *values)
+{
+  const leapfrog *l = self;
+  if (form == DVI_FORM_E && cell != NULL) DVI_TRY(check_owners(l, count, cell));
+  DVI_TRY(sample(self, form, count, cell, values));
+  return form == DVI_FORM_E && cell == NULL ? dvi__refresh(l->field->mesh, l->field->degree, values)
+                                            : DVI_OK;
+}
+
 /* E.M_k E/2 + B^n.M_{k+1} B^{n+1}/2 - source.(A^n + A^{n+1})/2 */
 static dvi_status energy(const void *self, double *value)
 {
@@ -395,37 +425,83 @@ static void facts(const void *self, dvi_march_facts *facts)
                              .longest = l->at.dt,
                              .bound = l->bound,
                              .steps = l->at.n,
-                             .updates = l->at.n * l->sweep.faces};
+                             .updates = l->at.n *
+                                        dvi__whole_count(l->field->mesh, l->field->degree + 1)};
 }
 
 /* ---- files ---- */
 
-static void save(const void *self, dvi__sections_writer *writer)
+enum { VERSION = 2, PIECES = 5 };
+
+/* Lay the state out as make_state does: E, H, A, what currents have, and the charge at the start. */
+static void find_pieces(const leapfrog *l, dvi__piece piece[PIECES])
+{
+  const dvi_field *f = l->field;
+  const int64_t A = l->keeps_A ? f->cells : 0, currents = 2 * (int64_t)f->currents;
+  piece[0] = (dvi__piece){f->degree, f->cells, l->E};
+  piece[1] = (dvi__piece){f->degree + 1, l->sweep.faces, l->H};
+  piece[2] = (dvi__piece){f->degree, A, l->A};
+  piece[3] = (dvi__piece){-1, currents, l->J};
+  piece[4] = (dvi__piece){f->degree - 1, dvi__charge_numbers(f) - f->currents, l->charge.start};
+}
+
+static dvi_status save(const void *self, dvi__sections_writer *writer)
 {
   const leapfrog *l = self;
-  dvi__section_open(writer, "leapfrog", 1);
+  dvi__piece piece[PIECES];
+  find_pieces(l, piece);
+  dvi__section_open(writer, "leapfrog", VERSION);
   dvi__section_put(writer, &l->at, sizeof l->at);
   dvi__section_open(writer, "forms", 1);
-  dvi__section_put(writer, l->state, (size_t)l->numbers * sizeof *l->state);
+  return dvi__pieces_put(l->field->mesh, PIECES, piece, writer);
+}
+
+/* Find what was saved, and refuse what another march has saved. */
+static dvi_status find_saved(const leapfrog *l, const dvi__sections *sections, int64_t numbers,
+                             place *at, dvi__section *forms)
+{
+  dvi__section found;
+  DVI_TRY(dvi__section_find(sections, "leapfrog", VERSION, sizeof *at, &found));
+  memcpy(at, found.content, sizeof *at);
+  if (at->hash != l->at.hash || at->dt != l->at.dt)
+    return dvi__fail(DVI_BAD_FILE,
+                     "march: %s is of another field, or of another step: it has dt = %.17g, and "
+                     "this march %.17g",
+                     sections->name, at->dt, l->at.dt);
+  return dvi__section_find(sections, "forms", 1, (size_t)numbers * sizeof(double), forms);
 }
 
 static dvi_status load(void *self, const dvi__sections *sections)
 {
   leapfrog *l = self;
-  dvi__section of_place, of_state;
+  const dvi_mesh *mesh = l->field->mesh;
+  dvi__piece piece[PIECES];
+  dvi__section forms;
   place at;
-  DVI_TRY(dvi__section_find(sections, "leapfrog", 1, sizeof at, &of_place));
-  memcpy(&at, of_place.content, sizeof at);
-  if (at.hash != l->at.hash || at.dt != l->at.dt)
-    return dvi__fail(DVI_BAD_FILE,
-                     "march: %s is of another field, or of another step: it has dt = %.17g, and "
-                     "this march %.17g",
-                     sections->name, at.dt, l->at.dt);
-  DVI_TRY(dvi__section_find(sections, "forms", 1, (size_t)l->numbers * sizeof(double), &of_state));
+  find_pieces(l, piece);
+  const int64_t numbers = dvi__pieces_size(mesh, PIECES, piece);
+  DVI_TRY(dvi__agree(mesh, find_saved(l, sections, numbers, &at, &forms)));
+  DVI_TRY(dvi__check_same(mesh, sections->name, sections->size, sections->bytes));
   l->at = at;
-  memcpy(l->state, of_state.content, of_state.size);
+  dvi__pieces_take(mesh, PIECES, piece, forms.content);
   l->changed = -1;
+  l->is_lost = 0;
   return DVI_OK;
+}
+
+static dvi_status agree(const void *self, dvi_status status)
+{
+  return dvi__agree(((const leapfrog *)self)->field->mesh, status);
+}
+
+static int is_lost(const void *self)
+{
+  return ((const leapfrog *)self)->is_lost;
+}
+
+static int writes(const void *self)
+{
+  return dvi__is_first(((const leapfrog *)self)->field->mesh);
 }
 
 /* ---- create ---- */
@@ -521,46 +597,24 @@ static dvi_status make_solver(leapfrog *l)
   return DVI_OK;
 }
 
-/* Sum up the coefficients of what moves charge. */
-static uint64_t hash_currents(const dvi_field *f, uint64_t hash)
-{
-  if (f->damping.rows > 0)
-    hash = dvi__hash(hash, (size_t)f->damping.start[f->unknowns] * sizeof(double),
-                     f->damping.value);
-  for (int c = 0; c < f->currents; c++) {
-    const dvi__current *J = f->current + c;
-    hash = dvi__hash(hash, (size_t)J->count * sizeof *J->unknown, J->unknown);
-    hash = dvi__hash(hash, (size_t)J->count * sizeof *J->weight, J->weight);
-  }
-  return hash;
-}
-
-/* Sum up what distinguishes the march from others of as many cells. */
-static uint64_t hash_of(const leapfrog *l)
+/* Make what a process has by itself. */
+static dvi_status make_own(leapfrog *l, int threads)
 {
   const dvi_field *f = l->field;
-  uint64_t hash = dvi__hash(DVI__HASH_START, sizeof f->degree, &f->degree);
-  hash = dvi__hash(hash, sizeof f->cells, &f->cells);
-  hash = dvi__hash(hash, sizeof l->sweep.faces, &l->sweep.faces);
-  hash = dvi__hash(hash, sizeof f->unknowns, &f->unknowns);
-  hash = dvi__hash(hash, sizeof f->currents, &f->currents);
-  hash = dvi__hash(hash, (size_t)f->unknowns * sizeof(int), f->unknown);
-  hash = hash_currents(f, hash);
-  hash = dvi__hash(hash, (size_t)f->mass.start[f->unknowns] * sizeof(double), f->mass.value);
-  return dvi__hash(hash, (size_t)f->stiffness.start[f->unknowns] * sizeof(double),
-                   f->stiffness.value);
+  DVI_TRY(dvi__sweep_create(f, threads, &l->sweep));
+  DVI_TRY(make_state(l));
+  if (f->mass_is_diagonal && l->sweep.is_diagonal) return make_coefficients(l);
+  DVI_TRY(dvi__refuse_share(f->mesh, "march: leapfrog with a Whitney star"));
+  return make_solver(l);
 }
 
 static dvi_status make(leapfrog *l, int threads)
 {
   const dvi_field *f = l->field;
-  DVI_TRY(dvi__sweep_create(f, threads, &l->sweep));
-  DVI_TRY(make_state(l));
+  DVI_TRY(dvi__agree(f->mesh, make_own(l, threads)));
+  DVI_TRY(dvi__refresh(f->mesh, f->degree + 1, l->sweep.weight));
   DVI_TRY(dvi__wave_source(f, &l->source));
-  l->at.hash = hash_of(l);
-  if (f->mass_is_diagonal && l->sweep.is_diagonal) return make_coefficients(l);
-  DVI_TRY(dvi__refuse_share(f->mesh, "march: leapfrog with a Whitney star"));
-  return make_solver(l);
+  return dvi__field_hash(f, &l->at.hash);
 }
 
 static const dvi__march_kind kind = {
@@ -570,13 +624,16 @@ static const dvi__march_kind kind = {
     .advance = advance,
     .time = time,
     .size = size,
-    .sample = sample,
+    .sample = show,
     .observables = observables,
     .observable = observable,
     .observe = observe,
     .facts = facts,
     .save = save,
     .load = load,
+    .agree = agree,
+    .writes = writes,
+    .is_lost = is_lost,
 };
 
 dvi_status dvi__leapfrog_create(const dvi_field *field, const dvi__march_plan *plan,
@@ -586,14 +643,21 @@ dvi_status dvi__leapfrog_create(const dvi_field *field, const dvi__march_plan *p
   DVI_TRY(dvi__refuse_options(kind.name, plan));
   DVI_TRY(dvi__choose_step(field, plan, &dt, &bound));
   leapfrog *l = DVI_NEW(leapfrog, 1);
-  if (l == NULL) return dvi__fail(DVI_NO_MEMORY, "march: no memory");
-  l->field = field;
-  l->at.dt = dt;
-  l->bound = bound;
-  l->keeps_A = field->is_wave || plan->potential || moves_charge(field);
-  l->changed = -1;
-  const dvi_status status = dvi__agree(field->mesh, make(l, plan->threads));
-  if (status == DVI_OK) return dvi__march_wrap(&kind, l, march);
-  destroy(l);
+  dvi_status status = dvi__agree(field->mesh,
+                                 l != NULL ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "march: no memory"));
+  if (status == DVI_OK) {
+    l->field = field;
+    l->at.dt = dt;
+    l->bound = bound;
+    l->keeps_A = field->is_wave || plan->potential || moves_charge(field);
+    l->changed = -1;
+    status = make(l, plan->threads);
+  }
+  if (status != DVI_OK) {
+    destroy(l);
+    return status;
+  }
+  status = dvi__agree(field->mesh, dvi__march_wrap(&kind, l, march));
+  if (status != DVI_OK) dvi_march_destroy(march);
   return status;
 }

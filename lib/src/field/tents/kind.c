@@ -223,7 +223,7 @@ static place place_of(const march *m)
                  .watch = m->watch};
 }
 
-static void save(const void *self, dvi__sections_writer *writer)
+static dvi_status save(const void *self, dvi__sections_writer *writer)
 {
   const march *m = self;
   const dvi__tents *w = m->tents;
@@ -232,6 +232,7 @@ static void save(const void *self, dvi__sections_writer *writer)
   dvi__section_open(writer, section_name, SECTION_VERSION);
   dvi__section_put(writer, &here, sizeof here);
   for (int i = 0; i < all.count; i++) dvi__section_put(writer, all.at[i], all.bytes[i]);
+  return DVI_OK;
 }
 
 static dvi_status load(void *self, const dvi__sections *sections)

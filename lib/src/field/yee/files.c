@@ -110,7 +110,7 @@ static part part_of(const dvi__yee *y, int number)
 
 /* ---- save ---- */
 
-void dvi__yee_save(const void *self, dvi__sections_writer *writer)
+dvi_status dvi__yee_save(const void *self, dvi__sections_writer *writer)
 {
   const dvi__yee *y = self;
   const identity id = {hash_grid(y), y->dt, y->t0, y->t, y->step, y->charge != NULL};
@@ -128,9 +128,10 @@ void dvi__yee_save(const void *self, dvi__sections_writer *writer)
     const double sums[2] = {y->source[i].impulse, y->source[i].compensation};
     dvi__section_put(writer, sums, sizeof sums);
   }
-  if (y->charge == NULL) return;
+  if (y->charge == NULL) return DVI_OK;
   dvi__section_open(writer, "yee-charges", VERSION);
   dvi__section_put(writer, y->charge, dvi__yee_count_nodes(y) * sizeof(double));
+  return DVI_OK;
 }
 
 /* ---- load ---- */

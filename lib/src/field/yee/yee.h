@@ -487,7 +487,7 @@ dvi_status dvi__yee_observe(const void *yee, int i, double *value);
 
 /* ---- files.c ---- */
 
-void dvi__yee_save(const void *yee, dvi__sections_writer *writer);
+dvi_status dvi__yee_save(const void *yee, dvi__sections_writer *writer);
 dvi_status dvi__yee_load(void *yee, const dvi__sections *sections);
 
 #endif

@@ -1,0 +1,140 @@
+#include "field/step/saved.h"
+
+#include <string.h>
+
+#include "core/hash.h"
+#include "core/memory.h"
+#include "core/status.h"
+#include "field/mesh/share.h"
+
+/* Numbers that are put together at once. */
+enum { CHUNK = 1 << 14 };
+
+/* ---- pieces ---- */
+
+static int64_t size_of(const dvi_mesh *mesh, const dvi__piece *piece)
+{
+  return piece->degree < 0 || piece->count == 0 ? piece->count
+                                                : dvi__whole_count(mesh, piece->degree);
+}
+
+int64_t dvi__pieces_size(const dvi_mesh *mesh, int pieces, const dvi__piece *piece)
+{
+  int64_t sum = 0;
+  for (int i = 0; i < pieces; i++) sum += size_of(mesh, piece + i);
+  return sum;
+}
+
+/* Put a form together. The owner of a cell adds the bits of its value to the zeros of the others, so
+ * that their sum as integers is exact, of -0 as well. `bits` has room for a chunk. */
+static dvi_status put_form(const dvi_mesh *mesh, const dvi__piece *piece, int64_t *bits,
+                           dvi__sections_writer *writer)
+{
+  const int k = piece->degree;
+  const int64_t total = size_of(mesh, piece);
+  int64_t here = 0;
+  for (int64_t first = 0; first < total; first += CHUNK) {
+    const int64_t count = total - first < CHUNK ? total - first : CHUNK;
+    memset(bits, 0, (size_t)count * sizeof *bits);
+    for (; here < piece->count && dvi__whole_number(mesh, k, here) < first + count; here++)
+      if (dvi__owns(mesh, k, here))
+        memcpy(bits + (dvi__whole_number(mesh, k, here) - first), piece->value + here,
+               sizeof *bits);
+    DVI_TRY(dvi__count_all(mesh, (int)count, bits));
+    dvi__section_put(writer, bits, (size_t)count * sizeof *bits);
+  }
+  return DVI_OK;
+}
+
+dvi_status dvi__pieces_put(const dvi_mesh *mesh, int pieces, const dvi__piece *piece,
+                           dvi__sections_writer *writer)
+{
+  int64_t *bits = mesh->share != NULL ? DVI_NEW(int64_t, CHUNK) : NULL;
+  dvi_status status = dvi__agree(mesh, bits != NULL || mesh->share == NULL
+                                           ? DVI_OK
+                                           : dvi__fail(DVI_NO_MEMORY, "march: no memory to save"));
+  for (int i = 0; i < pieces && status == DVI_OK; i++) {
+    if (mesh->share != NULL && piece[i].degree >= 0)
+      status = put_form(mesh, piece + i, bits, writer);
+    else
+      dvi__section_put(writer, piece[i].value, (size_t)piece[i].count * sizeof(double));
+  }
+  dvi__release(bits);
+  return status;
+}
+
+void dvi__pieces_take(const dvi_mesh *mesh, int pieces, const dvi__piece *piece,
+                      const unsigned char *numbers)
+{
+  for (int i = 0; i < pieces; i++) {
+    const int k = piece[i].degree;
+    for (int64_t c = 0; c < piece[i].count; c++) {
+      const int64_t at = k >= 0 ? dvi__whole_number(mesh, k, c) : c;
+      memcpy(piece[i].value + c, numbers + (size_t)at * sizeof(double), sizeof(double));
+    }
+    numbers += (size_t)size_of(mesh, piece + i) * sizeof(double);
+  }
+}
+
+/* ---- hashes ---- */
+
+static uint64_t hash_entries(const dvi__csr *A, int64_t row, uint64_t hash)
+{
+  for (int64_t e = A->start[row]; e < A->start[row + 1]; e++)
+    if (A->value[e] != 0) hash = dvi__hash(hash, sizeof *A->value, A->value + e);
+  return hash;
+}
+
+/* Give a hash of an unknown, with its cell's number in the whole mesh. */
+static uint64_t hash_unknown(const dvi_field *f, int64_t i)
+{
+  const int64_t number = dvi__whole_number(f->mesh, f->degree, f->unknown[i]);
+  uint64_t hash = dvi__hash(DVI__HASH_START, sizeof number, &number);
+  hash = hash_entries(&f->mass, i, hash);
+  hash = hash_entries(&f->stiffness, i, hash);
+  if (f->damping.rows > 0) hash = hash_entries(&f->damping, i, hash);
+  for (int c = 0; c < f->currents; c++) {
+    const dvi__current *J = f->current + c;
+    const int64_t k = dvi__current_entry(J, i);
+    if (k == J->count || J->unknown[k] != i) continue;
+    hash = dvi__hash(hash, sizeof c, &c);
+    hash = dvi__hash(hash, sizeof *J->weight, J->weight + k);
+  }
+  return hash;
+}
+
+/* Replace a number by the sum of all processes' numbers modulo 2^64, whose halves do not
+ * overflow. */
+static dvi_status sum_modulo(const dvi_mesh *mesh, uint64_t *number)
+{
+  int64_t half[2] = {(int64_t)(*number & UINT32_MAX), (int64_t)(*number >> 32)};
+  DVI_TRY(dvi__count_all(mesh, 2, half));
+  *number = (uint64_t)half[0] + ((uint64_t)half[1] << 32);
+  return DVI_OK;
+}
+
+dvi_status dvi__field_hash(const dvi_field *field, uint64_t *hash)
+{
+  const dvi_field *f = field;
+  const int64_t head[] = {f->degree, dvi__whole_count(f->mesh, f->degree),
+                          dvi__whole_count(f->mesh, f->degree + 1), f->whole_unknowns, f->currents};
+  uint64_t sum = 0;
+  for (int64_t i = 0; i < f->unknowns; i++)
+    if (dvi__owns(f->mesh, f->degree, f->unknown[i])) sum += hash_unknown(f, i);
+  DVI_TRY(sum_modulo(f->mesh, &sum));
+  *hash = dvi__hash(dvi__hash(DVI__HASH_START, sizeof head, head), sizeof sum, &sum);
+  return DVI_OK;
+}
+
+dvi_status dvi__check_same(const dvi_mesh *mesh, const char *name, size_t size,
+                           const unsigned char *content)
+{
+  if (mesh->share == NULL) return DVI_OK;
+  const uint64_t here = dvi__hash(DVI__HASH_START, size, content);
+  uint64_t all = here;
+  DVI_TRY(sum_modulo(mesh, &all));
+  return dvi__agree(
+      mesh, all == here * (uint64_t)mesh->share->ranks.count
+                ? DVI_OK
+                : dvi__fail(DVI_BAD_FILE, "march: %s is not the same on all processes", name));
+}

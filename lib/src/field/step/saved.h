@@ -1,0 +1,35 @@
+/* The state of a march in files, which is that of the whole mesh: several processes put it together
+ * from the values of the cells that they own, and each takes those of its cells from it. */
+#ifndef DVI_FIELD_STEP_SAVED_H
+#define DVI_FIELD_STEP_SAVED_H
+#include "field/model/field.h"
+#include "march/sections.h"
+
+/* A form [cells of a degree], or numbers that are the same on all processes. */
+typedef struct dvi__piece {
+  int degree; /* -1 of the latter */
+  int64_t count;
+  double *value;
+} dvi__piece;
+
+/* Return how many numbers of the whole mesh the pieces have together. */
+int64_t dvi__pieces_size(const dvi_mesh *mesh, int pieces, const dvi__piece *piece);
+
+/* Put the pieces' numbers of the whole mesh into the open section, every bit as it is. Called on all
+ * processes, of which those may have a writer without memory that do not need the file. */
+dvi_status dvi__pieces_put(const dvi_mesh *mesh, int pieces, const dvi__piece *piece,
+                           dvi__sections_writer *writer);
+
+/* Fill the pieces with numbers of the whole mesh [dvi__pieces_size]. */
+void dvi__pieces_take(const dvi_mesh *mesh, int pieces, const dvi__piece *piece,
+                      const unsigned char *numbers);
+
+/* Give a hash of what distinguishes a field from others, its coefficients cell by cell. It is the
+ * same for all divisions of the mesh. Called on all processes. */
+dvi_status dvi__field_hash(const dvi_field *field, uint64_t *hash);
+
+/* Refuse sections of which the processes have different ones. Called on all of them. */
+dvi_status dvi__check_same(const dvi_mesh *mesh, const char *name, size_t size,
+                           const unsigned char *content);
+
+#endif
