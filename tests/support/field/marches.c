@@ -1,8 +1,9 @@
 #include "support/field/marches.h"
 
-#include <check.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "support/suite.h"
 
 void advance_march(dvi_march *march, double t)
 {

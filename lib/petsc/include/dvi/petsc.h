@@ -1,4 +1,4 @@
-/** Meshes that are divided among the processes of MPI, by PETSc.
+/** Meshes and grids that are divided among the processes of MPI, by PETSc.
  *
  *  This header is not part of <dvi/dvi.h>, and the only one that includes MPI's. Link dvi::petsc
  *  (dvi-petsc). A binary that is linked to Debian's PETSc may be passed on under the GPL only,
@@ -9,6 +9,7 @@
 #ifndef DVI_PETSC_H
 #define DVI_PETSC_H
 #include <dvi/mesh.h>
+#include <dvi/yee.h>
 #include <mpi.h>
 
 /** What joins the share of a process to the others. */
@@ -61,6 +62,19 @@ void dvi_division_facts_of(const dvi_division *division, dvi_division_facts *fac
 
 /** Release the division before PetscFinalize, and set the pointer to NULL. NULL is allowed. */
 void dvi_division_destroy(dvi_division **division);
+
+/** Let the processes of a communicator divide grids of boxes among them (dvi_yee_terms). This needs
+ *  MPI alone.
+ *
+ *  @param comm  the processes, for as long as there are marches. MPI_COMM_NULL for all of them
+ *  @param[out] ranks  for dvi_yee_ranks_destroy, after the marches
+ *  @retval DVI_BAD_ARGUMENT  MPI has not been started, or there is no place for the result
+ *  @retval DVI_SOLVER_FAILED MPI failed
+ *  @retval DVI_NO_MEMORY     there is no memory */
+dvi_status dvi_yee_ranks_create(MPI_Comm comm, dvi_yee_ranks **ranks);
+
+/** Release them, and set the pointer to NULL. NULL is allowed. */
+void dvi_yee_ranks_destroy(dvi_yee_ranks **ranks);
 
 #ifdef __cplusplus
 }

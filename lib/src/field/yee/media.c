@@ -200,9 +200,9 @@ static dvi_status find_values(stars *s)
   for (int k = before_own(y, 2); k < dvi__yee_end(y, DVI__YEE_E + 2, 2); k++)
     for (int j = before_own(y, 1); j < dvi__yee_end(y, DVI__YEE_E + 1, 1); j++)
       for (int i = 0; i < y->axis[0].cells; i++) {
-        const int cell[] = {i, around(y, 1, j), around(y, 2, k)};
+        const int cell[3] = {i, around(y, 1, j), around(y, 2, k)};
         dvi__average_box box = {.space = y->axes};
-        for (int l = 0; l < y->axes; l++) {
+        for (int l = 0; l < 3; l++) {
           box.lower[l] = y->axis[l].node[cell[l]];
           box.upper[l] = y->axis[l].node[cell[l] + 1];
         }
@@ -226,7 +226,7 @@ static dvi_status fill_places(const stars *s, double *array)
     for (int k = bottom; k < dvi__yee_end(y, component, 2); k++)
       for (int j = low; j < dvi__yee_end(y, component, 1); j++)
         for (int i = 0; i < dvi__yee_places(y, component, 0); i++) {
-          const int place[] = {i, around(y, 1, j), around(y, 2, k)};
+          const int place[3] = {i, around(y, 1, j), around(y, 2, k)};
           double sum;
           DVI_TRY(sum_pieces(s, component, place, &sum));
           const double vacuum = vacuum_star(y, component, place);

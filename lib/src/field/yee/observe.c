@@ -83,8 +83,9 @@ static double displacement(const dvi__yee *y, int c, const int *place, int all, 
  * grid. */
 static const double *displacements_below(const dvi__yee *y, int all)
 {
-  const int c = y->divided, across = 3 - c;
+  const int c = y->divided;
   if (c < 0 || y->slot[c] < 0) return NULL;
+  const int across = c == 2 ? 1 : 2;
   double *sent = dvi__yee_plane_sent(y);
   int place[3] = {0, 0, 0};
   place[c] = dvi__yee_last_boxes(y);
@@ -321,18 +322,21 @@ const char *dvi__yee_observable(const void *self, int i)
 dvi_status dvi__yee_observe(const void *self, int i, double *found)
 {
   const dvi__yee *y = self;
+  double seen = 0;
   DVI_TRY(dvi__yee_check_ranks(y));
   if (i >= FIXED) DVI_TRY(dvi__yee_set_moment(y));
   switch (i) {
-  case ENERGY: *found = energy_of(y); break;
-  case CHARGE: *found = visit_nodes(y, 0, NULL, NULL).sum; break;
-  case GAUSS: *found = gauss_of(y); break;
-  case DIVERGENCE: *found = divergence_of(y); break;
+  case ENERGY: seen = energy_of(y); break;
+  case CHARGE: seen = visit_nodes(y, 0, NULL, NULL).sum; break;
+  case GAUSS: seen = gauss_of(y); break;
+  case DIVERGENCE: seen = divergence_of(y); break;
   default:
-    *found = i - FIXED < y->probes ? probe_value(y->moment, &y->probe[i - FIXED])
-                                   : flux_value(y->moment, &y->flux[i - FIXED - y->probes]);
+    seen = i - FIXED < y->probes ? probe_value(y->moment, &y->probe[i - FIXED])
+                                 : flux_value(y->moment, &y->flux[i - FIXED - y->probes]);
   }
-  return dvi__yee_check_ranks(y);
+  DVI_TRY(dvi__yee_check_ranks(y));
+  *found = seen;
+  return DVI_OK;
 }
 
 /* ---- checks ---- */

@@ -176,10 +176,10 @@ static void turn(const dvi__yee *y, int way, size_t count, double *x)
   }
 }
 
-/* Copy a plane of the components of a form, those along the divided axis or the others, from or to
- * a buffer. Give the numbers of a copy. */
-static size_t copy_plane(const dvi__yee *y, int form, int along, int plane, double *to,
-                         const double *from)
+/* Copy a plane of the components of a form, those along the divided axis or the others, to a buffer
+ * or from it. Give the numbers of a copy. */
+static size_t copy_plane(const dvi__yee *y, int form, int along, int plane, double *buffer,
+                         int takes)
 {
   const size_t across = y->planes->across, row = dvi__yee_row_along(y, y->divided, plane) * across,
                block = (size_t)y->components * y->width, bytes = y->width * sizeof(double);
@@ -189,7 +189,7 @@ static size_t copy_plane(const dvi__yee *y, int form, int along, int plane, doub
       if (y->slot[c] < 0 || (c % 3 == y->divided) != along) continue;
       for (size_t j = 0; j < across; j++, at += y->width) {
         double *x = y->state[copy] + (row + j) * block + (size_t)y->slot[c] * y->width;
-        memcpy(to != NULL ? to + at : x, to != NULL ? x : from + at, bytes);
+        memcpy(takes ? x : buffer + at, takes ? buffer + at : x, bytes);
       }
     }
   return at / (size_t)y->copies;
@@ -198,10 +198,10 @@ static size_t copy_plane(const dvi__yee *y, int form, int along, int plane, doub
 static void pass(const dvi__yee *y, int form, int along, int way, int from, int to)
 {
   if (y->planes == NULL || y->planes->failed != 0) return;
-  const size_t count = copy_plane(y, form, along, from, y->planes->sent, NULL);
+  const size_t count = copy_plane(y, form, along, from, y->planes->sent, 0);
   if (!send(y, way, count, y->planes->received)) return;
   turn(y, way, count, y->planes->received);
-  (void)copy_plane(y, form, along, to, NULL, y->planes->received);
+  (void)copy_plane(y, form, along, to, y->planes->received, 1);
 }
 
 void dvi__yee_pass_faces(const dvi__yee *y)
@@ -231,7 +231,7 @@ double *dvi__yee_plane_sent(const dvi__yee *y)
 
 size_t dvi__yee_at_plane(const dvi__yee *y, int component, int copy, const int *place)
 {
-  const size_t number = (size_t)(3 * copy + component % 3),
+  const size_t number = 3 * (size_t)copy + (size_t)component % 3,
                row = y->divided == 2 ? dvi__yee_row_along(y, 1, place[1]) : 0;
   return (number * y->planes->across + row) * y->width + DVI__YEE_LEFT + (size_t)place[0];
 }

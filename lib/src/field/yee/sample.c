@@ -132,7 +132,7 @@ void dvi__yee_pass_moment(dvi__yee_moment *m)
   const dvi__yee *y = m->yee;
   if (y->divided < 0 || m->part == 0) return;
   double *sent = dvi__yee_plane_sent(y);
-  int place[3] = {0, 0, 0}, *across = &place[3 - y->divided];
+  int place[3] = {0, 0, 0}, *across = &place[y->divided == 2 ? 1 : 2];
   place[y->divided] = dvi__yee_last_boxes(y);
   for (int c = 0; c < 3; c++) {
     if (y->slot[DVI__YEE_B + c] < 0 || c == y->divided) continue;
