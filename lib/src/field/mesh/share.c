@@ -1,5 +1,7 @@
 #include "field/mesh/share.h"
 
+#include <stdlib.h>
+
 #include "core/memory.h"
 #include "core/status.h"
 
@@ -31,6 +33,22 @@ int64_t dvi__find_number(const dvi_mesh *mesh, int k, int64_t number)
       last = middle;
   }
   return first < mesh->count[k] && numbers[first] == number ? first : -1;
+}
+
+static int compare_cells(const void *a, const void *b)
+{
+  const int first = *(const int *)a, second = *(const int *)b;
+  return (first > second) - (first < second);
+}
+
+int dvi__is_outer(const dvi_mesh *mesh, int64_t facet)
+{
+  int64_t count;
+  const int cell = (int)facet;
+  if (mesh->coface[2 * facet + 1] >= 0) return 0;
+  if (mesh->share == NULL) return 1;
+  const int *boundary = dvi_mesh_part_cells(mesh, "boundary", mesh->n - 1, &count);
+  return count > 0 && bsearch(&cell, boundary, (size_t)count, sizeof cell, compare_cells) != NULL;
 }
 
 /* ---- all processes ---- */

@@ -42,6 +42,9 @@ static inline double dvi__least_coordinate(const dvi_mesh *mesh, int axis, doubl
   return mesh->share == NULL ? here : mesh->share->least[axis];
 }
 
+/* Tell whether a facet is of the whole mesh's boundary, and not of the edge of a share alone. */
+int dvi__is_outer(const dvi_mesh *mesh, int64_t facet);
+
 /* Return the k-cell of a number in the whole mesh, or -1 if it is not of this share. */
 int64_t dvi__find_number(const dvi_mesh *mesh, int k, int64_t number);
 
