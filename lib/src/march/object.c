@@ -179,8 +179,8 @@ void dvi_march_facts_of(const dvi_march *march, dvi_march_facts *facts)
 
 /* ---- states in files and in memory ---- */
 
-/* Put the state together, on processes that do not keep it for the others alone. The caller releases
- * the bytes, after a failure, too. */
+/* Put the state together, on processes that do not keep it for the others alone. The caller
+ * releases the bytes, after a failure, too. */
 static dvi_status pack(const dvi_march *march, int keeps, dvi__sections_writer *writer)
 {
   *writer = (dvi__sections_writer){.bytes = NULL};

@@ -105,6 +105,17 @@ dvi_status dvi__sum_of_all(const dvi_mesh *mesh, dvi__accumulator *sum, double *
   return DVI_OK;
 }
 
+dvi_status dvi__check_owned(const dvi_mesh *mesh, int k, int64_t count, const int *cell)
+{
+  for (int64_t i = 0; i < count; i++)
+    if (!dvi__owns(mesh, k, cell[i]))
+      return dvi__fail(DVI_BAD_ARGUMENT,
+                       "mesh: %s is of process %d and not of this one, %d: ask for all cells",
+                       dvi__name_cell(mesh, k, cell[i]).text, mesh->share->owner[k][cell[i]],
+                       mesh->share->ranks.rank);
+  return DVI_OK;
+}
+
 dvi_status dvi__refuse_share(const dvi_mesh *mesh, const char *what)
 {
   if (mesh->share == NULL) return DVI_OK;

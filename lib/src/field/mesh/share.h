@@ -68,6 +68,9 @@ dvi_status dvi__sum_of_all(const dvi_mesh *mesh, dvi__accumulator *sum, double *
 dvi_status dvi__count_all(const dvi_mesh *mesh, int count, int64_t *number);
 dvi_status dvi__largest_of_all(const dvi_mesh *mesh, int count, double *number);
 
+/* Refuse k-cells of other processes. */
+dvi_status dvi__check_owned(const dvi_mesh *mesh, int k, int64_t count, const int *cell);
+
 /* Refuse a share for what needs a whole mesh, such as "march: avi". */
 dvi_status dvi__refuse_share(const dvi_mesh *mesh, const char *what);
 
