@@ -103,6 +103,18 @@ install_browser() {
   if apt-cache show $browser >/dev/null 2>&1; then install_packages $browser; fi
 }
 
+# Prints the option for the component that is linked to PETSc and MPI: it is built, and tested with
+# four processes, where they are. libsundials-dev of Debian brings them along. Nothing installs them
+# for its sake.
+petsc_option() {
+  if pkg-config --exists PETSc && command -v mpirun >/dev/null; then
+    echo -DDVI_PETSC=ON
+  else
+    say "PETSc or mpirun is not installed: the tests with MPI are skipped" >&2
+    echo -DDVI_PETSC=OFF
+  fi
+}
+
 # build PRESET [OPTION...]: configure and build; output only if it fails, or if there are warnings.
 # Messages of progress, which nobody sees, would start one more process for each source.
 build() {
@@ -174,7 +186,7 @@ lint() {
   install_packages "$lint_packages"
   install_browser
   status=0
-  build lint
+  build lint "$(petsc_option)"
   run_tests lint || status=1
   build asan
   # The texts are the same in every run: `long` tries more of them.
@@ -208,7 +220,7 @@ case $1 in
   demo) demo ;;
   test)
     install_packages "$test_packages"
-    build release
+    build release "$(petsc_option)"
     run_tests release -LE "lint|long"
     ;;
   site) site ;;

@@ -8,6 +8,9 @@ function kind_of(value) {
   return value == "SPEC" ? "methods" : "nothing"
 }
 
+# Tells whether an option takes all words up to the next option.
+function is_list(value) { return value ~ /\.\.\.$/ }
+
 /^Usage: dvi / && $3 != command {
   command = $3
   commands = commands (commands == "" ? "" : " ") command
@@ -53,6 +56,9 @@ function bash_script(   list, i, k, c, words, valued) {
   print "_dvi()\n{"
   print "  local word=${COMP_WORDS[COMP_CWORD]} last=${COMP_WORDS[COMP_CWORD-1]}"
   print "  local command=${COMP_WORDS[1]} options= operands=files values="
+  print "  local option at=$((COMP_CWORD - 1))"
+  print "  while [ \"$at\" -gt 1 ] && [ \"${COMP_WORDS[at]:0:2}\" != -- ]; do at=$((at - 1)); done"
+  print "  option=${COMP_WORDS[at]}"
   print "  COMPREPLY=()"
   print "  if [ \"$COMP_CWORD\" -eq 1 ]; then"
   print "    COMPREPLY=($(compgen -W \"" commands " --help --version\" -- \"$word\"))"
@@ -68,7 +74,12 @@ function bash_script(   list, i, k, c, words, valued) {
     for (c = 1; c <= options[command]; c++)
       if (value[command, c] != "")
         print "    " option[command, c] ") values=" kind_of(value[command, c]) " ;;"
-    print "    esac\n    ;;"
+    print "    esac"
+    for (c = 1; c <= options[command]; c++)
+      if (is_list(value[command, c]))
+        print "    [ \"$option\" = " option[command, c] " ] && [ \"${word:0:1}\" != - ] &&" \
+          " values=" kind_of(value[command, c])
+    print "    ;;"
   }
   print "  esac"
   print "  if [ -z \"$values\" ] && [ \"${word:0:1}\" = - ]; then"
@@ -120,7 +131,8 @@ function zsh_script(   list, i, k, c, repeats) {
       repeats = help[command, c] ~ /repeated|several/ ? "*" : ""
       printf "      '%s%s[%s]", repeats, option[command, c], quoted(help[command, c])
       if (value[command, c] != "")
-        printf ":%s:%s", quoted(value[command, c]), zsh_action(kind_of(value[command, c]))
+        printf ":%s%s:%s", is_list(value[command, c]) ? "*--*:" : "", quoted(value[command, c]),
+          zsh_action(kind_of(value[command, c]))
       print "' \\"
     }
     print "      '1:" quoted(operand[command]) ":" zsh_action(operands_of(command)) "'\n    ;;"

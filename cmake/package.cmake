@@ -9,6 +9,12 @@ install(TARGETS dvi dvi_scene dvi_study EXPORT dviTargets)
 # Programs do not link this one, libdvi loads it.
 install(TARGETS dvi_sundials LIBRARY NAMELINK_SKIP)
 install(TARGETS dvi_static EXPORT dviStaticTargets)
+if(TARGET dvi_petsc)
+  install(DIRECTORY lib/petsc/include/dvi DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
+  install(TARGETS dvi_petsc EXPORT dviPetscTargets)
+  set_target_properties(dvi_petsc PROPERTIES INSTALL_RPATH "$ORIGIN"
+                                             INSTALL_RPATH_USE_LINK_PATH ON)
+endif()
 set_target_properties(dvi dvi_scene dvi_study PROPERTIES INSTALL_RPATH "$ORIGIN")
 # Libraries from a prefix are found after the installation, too.
 set_target_properties(dvi dvi_sundials PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)
@@ -51,9 +57,13 @@ if(TARGET dvi_command AND NOT CMAKE_CROSSCOMPILING)
 endif()
 
 # A program that links the static library needs SUNDIALS and SuiteSparse; the shared library brings
-# them along. With two export sets only projects that ask for the component `static` must have them.
+# them along. With several export sets only projects that ask for the component `static` must have
+# them, and only those that ask for `petsc` MPI.
 install(EXPORT dviTargets NAMESPACE dvi:: DESTINATION "${package_directory}")
 install(EXPORT dviStaticTargets NAMESPACE dvi:: DESTINATION "${package_directory}")
+if(TARGET dvi_petsc)
+  install(EXPORT dviPetscTargets NAMESPACE dvi:: DESTINATION "${package_directory}")
+endif()
 install(FILES cmake/FindSUNDIALS.cmake cmake/FindSuiteSparse.cmake cmake/FindARPACK.cmake
         DESTINATION "${package_directory}")
 configure_package_config_file(
@@ -82,3 +92,8 @@ configure_file(cmake/dvi-study.pc.in dvi-study.pc @ONLY)
 install(FILES "${PROJECT_BINARY_DIR}/dvi.pc" "${PROJECT_BINARY_DIR}/dvi-scene.pc"
               "${PROJECT_BINARY_DIR}/dvi-study.pc"
         DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
+if(TARGET dvi_petsc)
+  configure_file(cmake/dvi-petsc.pc.in dvi-petsc.pc @ONLY)
+  install(FILES "${PROJECT_BINARY_DIR}/dvi-petsc.pc"
+          DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
+endif()

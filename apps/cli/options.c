@@ -102,10 +102,22 @@ static int store_words(const command_line *command, const option *o, const char 
   return DONE;
 }
 
+/* A file of CSV under a name of HDF5 could be read by nothing. */
+static int check_ending(const command_line *command, const option *o, const char *text)
+{
+  static const char ending[] = ".h5";
+  const size_t length = strlen(text), end = sizeof ending - 1;
+  if (!o->is_csv || length <= end || strcmp(text + length - end, ending) != 0) return DONE;
+  return usage_error("%s: --%s %s: CSV is written there, and names that end in .h5 are of HDF5; "
+                     "give another name",
+                     command->name, o->name, text);
+}
+
 static int store_value(const command_line *command, const option *o, const char *text, void *value)
 {
   if ((o->kind == OPTION_WORD || o->kind == OPTION_WORDS) && text[0] == '\0')
     return missing_value(command, o);
+  if (check_ending(command, o, text) != DONE) return USAGE;
   switch (o->kind) {
   case OPTION_NUMBER:
     if (parse_number(text, value)) return DONE;
@@ -116,6 +128,7 @@ static int store_value(const command_line *command, const option *o, const char 
                        command->name, o->name, text);
   case OPTION_WORDS: return store_words(command, o, text, value);
   case OPTION_WORD: *(const char **)value = text; return DONE;
+  case OPTION_LIST: return missing_value(command, o); /* a shell lists no files behind "=" */
   default: return usage_error("%s: --%s takes no value", command->name, o->name);
   }
 }
@@ -129,6 +142,16 @@ typedef struct reading {
   bool given[OPTIONS_MAX];
   void *request;
 } reading;
+
+/* Take all arguments up to the next option. */
+static void take_list(reading *r, word_list *list)
+{
+  *list = (word_list){.word = r->argv + r->at + 1};
+  while (r->at + 1 < r->argc && strncmp(r->argv[r->at + 1], "--", 2) != 0) {
+    list->count++;
+    r->at++;
+  }
+}
 
 /* Take the option at argv[at], and its value from there or from the next argument. */
 static int take_option(reading *r)
@@ -150,6 +173,10 @@ static int take_option(reading *r)
   }
   if (r->at + 1 == r->argc || strncmp(r->argv[r->at + 1], "--", 2) == 0)
     return missing_value(command, o);
+  if (o->kind == OPTION_LIST) {
+    take_list(r, value);
+    return DONE;
+  }
   return store_value(command, o, r->argv[++r->at], value);
 }
 

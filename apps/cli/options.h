@@ -13,13 +13,20 @@ typedef struct words {
   const char *word[WORDS_MAX];
 } words;
 
+/** The values of an option that takes all arguments up to the next option. */
+typedef struct word_list {
+  int count;
+  char *const *word; /**< [count] part of the command line */
+} word_list;
+
 /** Kinds of values. */
 typedef enum option_kind {
   OPTION_FLAG,   /**< bool, set by an option without value */
   OPTION_NUMBER, /**< double, any finite number */
   OPTION_COUNT,  /**< long, a whole number from 1 */
   OPTION_WORD,   /**< const char *, any text */
-  OPTION_WORDS   /**< words, any text, may be repeated */
+  OPTION_WORDS,  /**< words, any text, may be repeated */
+  OPTION_LIST    /**< word_list, any text, such as files that a shell lists */
 } option_kind;
 
 /** One option. */
@@ -29,6 +36,7 @@ typedef struct option {
   size_t place;      /**< offset of the value in the command's request, in bytes */
   const char *value; /**< spelling of the value in the help text, such as "H" */
   const char *help;
+  bool is_csv; /**< it names a file of CSV that is written; names of HDF5 are refused */
 } option;
 
 /** The kind and the place of an option whose value is this member of a request of this type. */
@@ -38,7 +46,8 @@ typedef struct option {
                    double: OPTION_NUMBER,     \
                    long: OPTION_COUNT,        \
                    const char *: OPTION_WORD, \
-                   words: OPTION_WORDS),      \
+                   words: OPTION_WORDS,       \
+                   word_list: OPTION_LIST),   \
   .place = offsetof(type, member)
 
 /** One subcommand, as its --help describes it. */

@@ -138,7 +138,8 @@ static const option command_options[] = {
     {.name = "out",
      OPTION_AT(control_request, out),
      .value = "FILE",
-     .help = "write the nodes there; -: standard output; default: nowhere"},
+     .help = "write the nodes there; -: standard output; default: nowhere",
+     .is_csv = true},
     {.name = NULL},
 };
 

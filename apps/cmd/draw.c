@@ -161,6 +161,10 @@ static int plot_file(const plot_request *request, const char *path)
   if (code != DONE) return code;
   if (length > 4 && strcmp(path + length - 4, ".pvd") == 0)
     return usage_error("plot: %s lists .vtu files; name one of them", path);
+  if (length > 7 && strcmp(path + length - 7, ".vtkhdf") == 0)
+    return usage_error("plot: %s has fields at the times of a run, which dvi view shows; dvi plot "
+                       "draws a .vtu file, and dvi run --pvd FILE.pvd writes them",
+                       path);
   const bool is_grid = length > 4 && strcmp(path + length - 4, ".vtu") == 0;
   return is_grid ? plot_grid(request, path) : plot_columns(request, path);
 }

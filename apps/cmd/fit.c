@@ -179,7 +179,8 @@ static const option command_options[] = {
     {.name = "out",
      OPTION_AT(fit_request, out),
      .value = "FILE",
-     .help = "where the rows go; left out, or -: standard output"},
+     .help = "where the rows go; left out, or -: standard output",
+     .is_csv = true},
     {.name = NULL},
 };
 

@@ -160,7 +160,8 @@ static const option command_options[] = {
     {.name = "out",
      OPTION_AT(gradient_request, out),
      .value = "FILE",
-     .help = "where the rows go; left out, or -: standard output"},
+     .help = "where the rows go; left out, or -: standard output",
+     .is_csv = true},
     {.name = NULL},
 };
 

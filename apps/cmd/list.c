@@ -143,7 +143,8 @@ typedef struct list_request {
 static const option command_options[] = {{.name = "csv",
                                           OPTION_AT(list_request, csv),
                                           .value = "-|FILE",
-                                          .help = "write the list as CSV"},
+                                          .help = "write the list as CSV",
+                                          .is_csv = true},
                                          {.name = NULL}};
 
 static const command_line command = {

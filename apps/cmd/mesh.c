@@ -262,7 +262,8 @@ static const option command_options[] = {
     {.name = "csv",
      OPTION_AT(mesh_request, csv),
      .value = "FILE",
-     .help = "write all quantities as CSV; - for standard output"},
+     .help = "write all quantities as CSV; - for standard output",
+     .is_csv = true},
     {.name = NULL},
 };
 

@@ -168,7 +168,8 @@ static const option command_options[] = {
     {.name = "out",
      OPTION_AT(path_request, out),
      .value = "FILE",
-     .help = "write the nodes there; -: standard output; default: nowhere"},
+     .help = "write the nodes there; -: standard output; default: nowhere",
+     .is_csv = true},
     {.name = NULL},
 };
 

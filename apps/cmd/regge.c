@@ -282,7 +282,8 @@ static const option command_options[] = {
     {.name = "csv",
      OPTION_AT(regge_request, csv),
      .value = "FILE",
-     .help = "write the rows to a file (default: standard output)"},
+     .help = "write the rows to a file (default: standard output)",
+     .is_csv = true},
     MESH_SIZE_OPTIONS(regge_request, sizes),
     {.name = NULL},
 };

@@ -308,7 +308,8 @@ static const option command_options[] = {
     {.name = "csv",
      OPTION_AT(spectrum_request, csv),
      .value = "FILE",
-     .help = "write the lines as CSV; - for standard output"},
+     .help = "write the lines as CSV; - for standard output",
+     .is_csv = true},
     {.name = NULL},
 };
 

@@ -14,6 +14,7 @@
 #include "cli/signals.h"
 #include "module/store.h"
 #include "store/table_output.h"
+#include "sweep/sweep_join.h"
 #include "sweep/sweep_part.h"
 #include "sweep/sweep_point.h"
 #include "cli/way.h"
@@ -22,7 +23,9 @@
 typedef struct sweep {
   const sweep_task *task;
   const char *command; /* the command line */
-  long points, there;  /* number of all points, and of those that an earlier sweep left */
+  long points;         /* number of all points */
+  study_part own;      /* part of the points that is run here */
+  long there;          /* number of points that an earlier sweep left */
   sweep_row *row;      /* [points] a row without a text is still to be run */
   long done;
   sweep_part part;
@@ -32,10 +35,12 @@ typedef struct sweep {
 } sweep;
 
 typedef struct sweep_request {
-  const char *out;
+  const char *out, *divided; /* divided is the value of --part, or NULL */
+  study_part part;
+  word_list join;
   long threads; /* 0 if not given */
   words settings;
-  char *command; /* the command line */
+  char *command; /* the command line, without --join */
 } sweep_request;
 
 static const char ended[] =
@@ -65,13 +70,14 @@ static int take_row(const dvi_study_point *at, const dvi_study_run *run, const d
   if (row->text == NULL) complain("out of memory");
   s->lost = row->text == NULL || !sweep_part_add(&s->part, k, row);
   s->done++;
-  progress_show(&s->progress, (double)s->done / (double)(s->points - s->there), "dvi sweep");
+  const long left = study_part_size(&s->own, s->points) - s->there;
+  progress_show(&s->progress, (double)s->done / (double)left, "dvi sweep");
   return s->lost ? -1 : 0;
 }
 
 static int sweep_run_points(sweep *s, int threads)
 {
-  const long left = s->points - s->there;
+  const long left = study_part_size(&s->own, s->points) - s->there;
   char *skip = calloc((size_t)s->points, 1);
   if (skip == NULL) {
     complain("out of memory");
@@ -81,6 +87,8 @@ static int sweep_run_points(sweep *s, int threads)
   const dvi_study_sweep_options options = {.size = sizeof options,
                                            .axes = s->task->grid.axes,
                                            .axis = s->task->grid.study,
+                                           .part = s->own.part,
+                                           .parts = s->own.parts,
                                            .skip = skip,
                                            .threads = threads < left ? threads : (int)left,
                                            .open = open_point,
@@ -149,33 +157,52 @@ static bool sweep_write_rows(const sweep *s, const char *path)
   return file_keep(&out);
 }
 
+/* Tell of points that failed, whose rows are in the file. Returns the exit code. */
+static int report_failures(const sweep *s, const char *path)
+{
+  const long failed = count_rows(s, true);
+  if (failed == 0) return DONE;
+  complain("sweep: %ld of %ld points failed; column status of '%s' says which", failed,
+           count_rows(s, false), path);
+  return FAILED;
+}
+
 static int sweep_finish(sweep *s, const char *path)
 {
   s->written = !s->lost && sweep_write_rows(s, path);
-  if (!s->written) return FAILED;
-  const long failed = count_rows(s, true);
-  if (failed == 0) return DONE;
-  complain("sweep: %ld of %ld points failed; column status of '%s' says which", failed, s->points,
-           path);
-  return FAILED;
+  return s->written ? report_failures(s, path) : FAILED;
+}
+
+/* Run the points that are not in the file of the sweep or its part yet. */
+static int sweep_run(sweep *s, const sweep_request *request, const sweep_key *key)
+{
+  int code = FAILED;
+  if (sweep_part_open(&s->part, request->out, key, s->points, s->row)) {
+    s->there = count_rows(s, false);
+    if (s->there > 0)
+      complain("sweep: %ld of %ld points are in '%s' already", s->there,
+               study_part_size(&s->own, s->points), s->part.path);
+    code = sweep_run_points(s, request->threads > 0 ? (int)request->threads : dvi_study_cores());
+    if (code == DONE)
+      code = s->own.given ? report_failures(s, s->part.path) : sweep_finish(s, request->out);
+  }
+  sweep_part_close(&s->part, s->written);
+  return code;
 }
 
 static int sweep_all(const sweep_task *task, const sweep_request *request)
 {
-  sweep s = {.task = task, .command = request->command, .points = task->grid.points};
-  const char *path = request->out;
+  sweep s = {
+      .task = task, .command = request->command, .points = task->grid.points, .own = request->part};
+  const sweep_key key = sweep_key_of(task, &s.own);
   int code = FAILED;
   s.row = calloc((size_t)s.points, sizeof *s.row);
   if (s.row == NULL)
     complain("out of memory");
-  else if (sweep_part_open(&s.part, path, sweep_key(task), s.points, s.row)) {
-    s.there = count_rows(&s, false);
-    if (s.there > 0)
-      complain("sweep: %ld of %ld points are in '%s' already", s.there, s.points, s.part.path);
-    code = sweep_run_points(&s, request->threads > 0 ? (int)request->threads : dvi_study_cores());
-    if (code == DONE) code = sweep_finish(&s, path);
-  }
-  sweep_part_close(&s.part, s.written);
+  else if (request->join.count == 0)
+    code = sweep_run(&s, request, &key);
+  else if (sweep_join(&key, &request->join, s.points, s.row))
+    code = sweep_finish(&s, request->out);
   for (long k = 0; s.row != NULL && k < s.points; k++) free(s.row[k].text);
   free(s.row);
   return code;
@@ -198,8 +225,22 @@ static int check_task(const sweep_task *task)
                    true);
 }
 
-static int sweep_check_request(const sweep_request *request)
+/* Refuse files to join that would be overwritten. */
+static int check_join(const sweep_request *request)
 {
+  if (request->join.count > 0 && request->part.given)
+    return usage_error("sweep: --part and --join exclude each other: parts are joined when all of "
+                       "them are there");
+  for (int i = 0; i < request->join.count; i++)
+    if (file_same(request->join.word[i], request->out))
+      return usage_error("sweep: --out %s is one of the parts of --join", request->out);
+  return DONE;
+}
+
+static int sweep_check_request(sweep_request *request)
+{
+  int code = study_part_read("sweep", request->divided, &request->part);
+  if (code != DONE) return code;
   if (request->out == NULL)
     return usage_error("sweep: --out FILE.csv is missing: where the rows go, and from where an "
                        "interrupted sweep goes on");
@@ -208,6 +249,8 @@ static int sweep_check_request(const sweep_request *request)
                        "interrupted sweep goes on from there");
   if (request->threads > DVI_STUDY_THREADS_MAX)
     return usage_error("sweep: at most %d threads", (int)DVI_STUDY_THREADS_MAX);
+  code = check_join(request);
+  if (code != DONE) return code;
   if (!file_writable(request->out)) return FAILED;
   return !store_is_wanted(request->out) || store_module(request->out) != NULL ? DONE : FAILED;
 }
@@ -251,11 +294,21 @@ static const char *const details[] = {
     "their "
     "names in its attribute\n"
     "columns, and status in the group text.\n",
+    "--part K/N keeps its rows in FILE.csv.K-of-N, from where it goes on when it is given again. "
+    "When all N parts are there,\n"
+    "the same command with --join FILE.csv.*-of-N instead of --part writes FILE.csv or FILE.h5, "
+    "the "
+    "same bytes as without\n"
+    "parts. Parts of another scene, method, step, end, grid or version are refused, and so are "
+    "missing and unfinished ones.\n"
+    "The number of threads and the machines do not matter; see docs/tools/cluster.md.\n",
     "Examples:\n"
     "  dvi init cart.yaml\n"
     "  dvi sweep cart.yaml --out cart.csv\n"
     "  dvi sweep cart.yaml --set l=0.2:1:5 --set m=0.2 --out lengths.csv\n"
-    "  dvi sweep kepler --method galerkin:degree=4 --set e=0:0.9:10 --out kepler.csv\n",
+    "  dvi sweep kepler --method galerkin:degree=4 --set e=0:0.9:10 --out kepler.csv\n"
+    "  dvi sweep cart.yaml --set l=0.2:1:64 --out l.csv --part 3/4\n"
+    "  dvi sweep cart.yaml --set l=0.2:1:64 --out l.csv --join l.csv.*-of-4\n",
     NULL,
 };
 
@@ -290,6 +343,14 @@ static const option command_options[] = {
      OPTION_AT(sweep_line, request.out),
      .value = "FILE.csv|FILE.h5",
      .help = "where the rows go, as HDF5 if the name ends in .h5"},
+    {.name = "part",
+     OPTION_AT(sweep_line, request.divided),
+     .value = "K/N|slurm",
+     .help = "run every N-th point from the K-th; slurm: K and N of this task of a job array"},
+    {.name = "join",
+     OPTION_AT(sweep_line, request.join),
+     .value = "FILE...",
+     .help = "run nothing, and put the files of all parts together"},
     {.name = NULL},
 };
 
@@ -303,6 +364,21 @@ static const command_line command = {
     .details = details,
 };
 
+/* Spell the command line without --join and its files, because the file is the one of a sweep that
+ * was never divided. */
+static char *spell_command(int argc, char **argv, const word_list *join)
+{
+  char **kept = calloc((size_t)argc + 1, sizeof *kept);
+  int count = 0;
+  if (kept == NULL) return NULL;
+  const long first = join->count > 0 ? (long)(join->word - argv) - 1 : argc;
+  for (int i = 0; i < argc; i++)
+    if (i < first || i > first + join->count) kept[count++] = argv[i];
+  char *text = command_spelled("sweep", count, kept);
+  free(kept);
+  return text;
+}
+
 int sweep_command(int argc, char **argv)
 {
   sweep_line r = {.task = {.h = (double)NAN, .t_end = (double)NAN}};
@@ -313,7 +389,7 @@ int sweep_command(int argc, char **argv)
   if (code == DONE) code = scene_spared("sweep", r.task.operand, 1, &out);
   if (code != DONE) return code;
   signals_end(true, ended);
-  r.request.command = command_spelled("sweep", argc, argv);
+  r.request.command = spell_command(argc, argv, &r.request.join);
   code = sweep_run_request(&r.request, &r.task);
   free(r.request.command);
   return code;

@@ -115,7 +115,7 @@ static int take_rows(const view_request *r, const char *path, view_source *sourc
 {
   int code = refuse_of_run(r);
   if (code == DONE && r->rows != NULL)
-    return usage_error("view: --rows is for .pvd files, and %s has rows itself", path);
+    return usage_error("view: --rows is for .pvd and .vtkhdf files, and %s has rows itself", path);
   if (code == DONE && r->scene == NULL && (r->settings.count > 0 || r->points.count > 0))
     return usage_error("view: --%s is for scenes; give --scene",
                        r->settings.count > 0 ? "set" : "point");
@@ -148,7 +148,8 @@ static int check_request(const view_request *r, const char *path)
 
 static int take_source(const view_request *r, const char *path, view_source *source, int *ended)
 {
-  const bool has_grids = ends_with(path, ".pvd") || ends_with(path, ".vtu");
+  const bool has_grids = ends_with(path, ".pvd") || ends_with(path, ".vtkhdf") ||
+                         ends_with(path, ".vtu");
   if (has_grids) return take_grids(r, path, source);
   if (ends_with(path, ".csv") || store_is_wanted(path) || strcmp(path, "-") == 0)
     return take_rows(r, path, source);
@@ -262,7 +263,8 @@ static const option command_options[] = {
 
 static const command_line command = {
     .name = "view",
-    .synopsis = "PROBLEM|SCENE.yaml|FILE.csv|FILE.h5|FILE.pvd --out PAGE.html [OPTIONS]",
+    .synopsis =
+        "PROBLEM|SCENE.yaml|FILE.csv|FILE.h5|FILE.pvd|FILE.vtkhdf --out PAGE.html [OPTIONS]",
     .operand = "FILE",
     .summary = "Write a page that shows a run in a browser: what moves in space, fields in "
                "colours, and curves over time.\n",

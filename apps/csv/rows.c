@@ -15,12 +15,38 @@ static bool refuse_unreadable(const char *path)
   return false;
 }
 
+/* The first byte of a file of HDF5, with which no CSV begins. */
+enum { HDF5_BYTE = 0x89 };
+
+static bool ends_with(const char *path, const char *ending)
+{
+  const size_t length = strlen(path), end = strlen(ending);
+  return length > end && strcmp(path + length - end, ending) == 0;
+}
+
+/* Refuse a file of HDF5 that is read as CSV. */
+static bool refuse_hdf5(const row_file *file)
+{
+  const int first = getc(file->stream);
+  if (first != EOF) (void)ungetc(first, file->stream);
+  if (first != HDF5_BYTE) return true;
+  if (strcmp(file->path, "-") == 0)
+    complain("standard input has a file of HDF5, which is read by its name only; give FILE.h5");
+  else if (ends_with(file->path, ".vtkhdf"))
+    complain("'%s' has fields at the times of a run, and no rows; dvi view shows them, and "
+             "dvi run --out writes rows",
+             file->path);
+  else
+    complain("'%s' is a file of HDF5; give it a name that ends in .h5", file->path);
+  return false;
+}
+
 bool rows_open(row_file *file, const char *path)
 {
   *file = (row_file){.path = path, .is_hdf5 = store_is_wanted(path)};
   if (file->is_hdf5) return row_source_open(&file->source, path);
   file->stream = strcmp(path, "-") == 0 ? stdin : fopen(path, "r");
-  return file->stream != NULL || refuse_unreadable(path);
+  return file->stream != NULL ? refuse_hdf5(file) : refuse_unreadable(path);
 }
 
 int rows_of_run(const char *command, const row_file *file)

@@ -74,6 +74,18 @@ typedef struct hdf5_content {
   const char *const *column; /**< [columns] names of the columns of numbers, until it is closed */
 } hdf5_content;
 
+/** A file of fields, to be read. */
+typedef struct hdf5_views hdf5_views;
+
+/** What such a file holds, until it is closed. */
+typedef struct hdf5_views_content {
+  int64_t steps;
+  const double *time; /**< [steps] */
+  hdf5_grid grid;     /**< without its points */
+  int fields;
+  const hdf5_field *field; /**< [fields] without their values, those of the points first */
+} hdf5_views_content;
+
 /** The functions of the module. */
 typedef struct hdf5_module {
   /** Return why the last function failed, half a sentence. */
@@ -123,6 +135,17 @@ typedef struct hdf5_module {
 
   /** Close the file. The pointer becomes NULL in any case. */
   bool (*close_frames)(hdf5_frames **frames);
+
+  /** Open a file of fields to read. Its run may go on, or have been killed: then these are the
+   * times that were flushed. Numbers of corners, and of points that cells name, are not tested. */
+  hdf5_views *(*open_views)(const char *path, hdf5_views_content *content);
+
+  /** Read the points [points*3] and the values of all fields, each [points or cells][components],
+   * at a step. */
+  bool (*read_view)(hdf5_views *views, int64_t step, double *point, double *const *value);
+
+  /** Close the file. The pointer becomes NULL. */
+  void (*close_views)(hdf5_views **views);
 } hdf5_module;
 
 /** The module's only symbol. */

@@ -1,5 +1,6 @@
 #include "hdf5/h5.h"
 #include "hdf5/hdf5_module.h"
+#include "hdf5/read_frames.h"
 #include "hdf5/read_rows.h"
 #include "hdf5/stored_frames.h"
 #include "hdf5/stored_rows.h"
@@ -18,4 +19,7 @@ const hdf5_module dvi_hdf5 = {
     .create_frames = stored_frames_create,
     .add_frame = stored_frames_add,
     .close_frames = stored_frames_close,
+    .open_views = read_frames_open,
+    .read_view = read_frames_read,
+    .close_views = read_frames_close,
 };

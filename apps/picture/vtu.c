@@ -166,57 +166,70 @@ static bool find_array(const vtu_file *file, const char *section, const char *na
 }
 
 /* Name a field after its array, and a component by its axis. */
-static void name_field(const vtu_array *array, int component, vtu_field *field)
+static void name_field(const char *name, int component, vtu_field *field)
 {
-  const size_t length = strlen(array->name);
-  (void)memcpy(field->name, array->name, sizeof field->name);
+  const size_t length = strlen(name);
+  (void)snprintf(field->name, sizeof field->name, "%s", name);
   if (component < 0 || length + 3 > sizeof field->name) return;
   field->name[length] = '_';
   field->name[length + 1] = "xyz"[component];
   field->name[length + 2] = '\0';
 }
 
-/* Take the values of an array, of vectors one component, or with -1 the lengths. */
-static bool take_field(const vtu_file *file, const vtu_array *array, int64_t count, int component,
-                       vtu_field *field)
+/* Add one component of vectors, or with -1 their lengths. */
+static bool add_field(vtu_grid *g, bool is_by_cell, int components, int component,
+                      const double *number)
 {
-  const int64_t numbers = count * array->components;
-  double *all = calloc((size_t)numbers + 1, sizeof *all);
-  name_field(array, component, field);
+  const int64_t count = is_by_cell ? g->cells : g->points;
+  vtu_field *field = &g->field[g->fields - 1];
+  field->is_by_cell = is_by_cell;
   field->value = calloc((size_t)count + 1, sizeof *field->value);
-  if (all == NULL || field->value == NULL) {
+  if (field->value == NULL) {
     complain("out of memory");
-    free(all);
     return false;
   }
-  const bool good = copy_numbers(file, array, "Float64", numbers, all);
-  for (int64_t i = 0; i < count && good; i++) {
-    const double *vector = all + i * array->components;
+  for (int64_t i = 0; i < count; i++) {
+    const double *vector = number + i * components;
     double square = 0;
-    for (long c = 0; c < array->components; c++) square += vector[c] * vector[c];
-    field->value[i] = component >= 0           ? vector[component]
-                      : array->components == 1 ? vector[0]
-                                               : sqrt(square);
+    for (int c = 0; c < components; c++) square += vector[c] * vector[c];
+    field->value[i] = component >= 0    ? vector[component]
+                      : components == 1 ? vector[0]
+                                        : sqrt(square);
   }
+  return true;
+}
+
+bool vtu_add_fields(vtu_grid *g, const char *name, bool is_by_cell, int components,
+                    const double *number)
+{
+  const int axes = components == 1 || components > 3 ? 0 : components;
+  for (int component = -1; component < axes && g->fields < VTU_FIELDS; component++) {
+    name_field(name, component, &g->field[g->fields++]);
+    if (!add_field(g, is_by_cell, components, component, number)) return false;
+  }
+  return true;
+}
+
+static bool take_field(const vtu_file *file, const vtu_array *array, bool is_by_cell, vtu_grid *g)
+{
+  const int64_t numbers = (is_by_cell ? g->cells : g->points) * array->components;
+  if (array->size != 8 * (size_t)numbers) return refuse(file, "an array has another size or type");
+  double *all = calloc((size_t)numbers + 1, sizeof *all);
+  if (all == NULL) complain("out of memory");
+  const bool good = all != NULL && copy_numbers(file, array, "Float64", numbers, all) &&
+                    vtu_add_fields(g, array->name, is_by_cell, (int)array->components, all);
   free(all);
   return good;
 }
 
-/* Take an array as a field, and of vectors their components as fields, too. */
+/* Take the arrays of a section as fields. */
 static bool take_fields(const vtu_file *file, const char *section, bool is_by_cell, vtu_grid *g)
 {
   const char *at, *end;
   vtu_array array;
   if (!find_section(file, section, &at, &end)) return true;
   while ((at = next_array(file, at, end)) != NULL && g->fields < VTU_FIELDS) {
-    if (!take_array(file, at, &array)) return false;
-    const int axes = array.components == 1 || array.components > 3 ? 0 : (int)array.components;
-    for (int component = -1; component < axes && g->fields < VTU_FIELDS; component++) {
-      vtu_field *field = &g->field[g->fields++];
-      field->is_by_cell = is_by_cell;
-      if (!take_field(file, &array, is_by_cell ? g->cells : g->points, component, field))
-        return false;
-    }
+    if (!take_array(file, at, &array) || !take_field(file, &array, is_by_cell, g)) return false;
     at++;
   }
   return true;
@@ -239,11 +252,26 @@ static bool take_counts(const vtu_file *file, vtu_grid *g)
   return true;
 }
 
-/* All cells are of one kind. */
-static bool take_kind(const vtu_file *file, vtu_grid *g)
+int vtu_corners(int kind)
 {
   static const int corners[] = {
       [VTU_LINE] = 2, [VTU_TRIANGLE] = 3, [VTU_PIXEL] = 4, [VTU_TETRAHEDRON] = 4, [VTU_VOXEL] = 8};
+  return kind >= 0 && kind <= VTU_VOXEL ? corners[kind] : 0;
+}
+
+const char *vtu_flaw(const vtu_grid *g)
+{
+  for (int64_t i = 0; i < 3 * g->points; i++)
+    if (!isfinite(g->point[i])) return "a coordinate is not finite";
+  for (int64_t i = 0; i < g->cells * g->corners; i++)
+    if (g->vertex[i] < 0 || g->vertex[i] >= g->points)
+      return "a cell has a point that does not exist";
+  return NULL;
+}
+
+/* All cells are of one kind. */
+static bool take_kind(const vtu_file *file, vtu_grid *g)
+{
   vtu_array types;
   if (!find_array(file, "Cells", "types", &types)) return false;
   if (types.size != (size_t)g->cells || strcmp(types.type, "UInt8") != 0)
@@ -251,10 +279,10 @@ static bool take_kind(const vtu_file *file, vtu_grid *g)
   const int kind = (unsigned char)types.at[0];
   for (int64_t c = 0; c < g->cells; c++)
     if (types.at[c] != types.at[0]) return refuse(file, "its cells are of several kinds");
-  if (kind > VTU_VOXEL || corners[kind] == 0)
+  if (vtu_corners(kind) == 0)
     return refuse(file, "its cells are no lines, triangles, pixels, tetrahedra or voxels");
   g->kind = (vtu_cell)kind;
-  g->corners = corners[kind];
+  g->corners = vtu_corners(kind);
   return true;
 }
 
@@ -274,12 +302,8 @@ static bool take_cells(const vtu_file *file, vtu_grid *g)
   if (!copy_numbers(file, &points, "Float64", 3 * g->points, g->point) ||
       !copy_numbers(file, &connectivity, "Int64", corners, g->vertex))
     return false;
-  for (int64_t i = 0; i < 3 * g->points; i++)
-    if (!isfinite(g->point[i])) return refuse(file, "a coordinate is not finite");
-  for (int64_t i = 0; i < corners; i++)
-    if (g->vertex[i] < 0 || g->vertex[i] >= g->points)
-      return refuse(file, "a cell has a point that does not exist");
-  return true;
+  const char *flaw = vtu_flaw(g);
+  return flaw == NULL || refuse(file, flaw);
 }
 
 int vtu_read(const char *path, vtu_grid *g)

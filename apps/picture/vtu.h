@@ -37,6 +37,17 @@ typedef struct vtu_grid {
 /** Read a file. Returns DONE, or complains and returns FAILED. */
 int vtu_read(const char *path, vtu_grid *g);
 
+/** Add numbers [points or cells][components] as a field, and the components of vectors as fields,
+ * too, as far as there is room. Complains and returns false without memory. */
+bool vtu_add_fields(vtu_grid *g, const char *name, bool is_by_cell, int components,
+                    const double *number);
+
+/** Return the number of corners of a kind of cells, or 0 if it is none of these. */
+int vtu_corners(int kind);
+
+/** Return why the points and cells are none of a grid, or NULL if they are. */
+const char *vtu_flaw(const vtu_grid *g);
+
 /** Return the field of a name, or NULL. */
 const vtu_field *vtu_find(const vtu_grid *g, const char *name);
 

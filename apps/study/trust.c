@@ -1,5 +1,6 @@
 #include "study/trust.h"
 
+#include <float.h>
 #include <math.h>
 
 /* Errors that fall slower than by an order of 1 follow no order. */
@@ -29,6 +30,11 @@ double trust_error(double first, double second, double third, double ratio)
 double trust_size(double size, double of_all)
 {
   return size < rounding * of_all ? of_all : size;
+}
+
+double trust_momentum(double p, double q, double moved)
+{
+  return moved < rounding * q ? p * (q / fmax(moved, DBL_EPSILON * q)) : p;
 }
 
 /* Count the digits. A number that is 0 without an error has all digits. */

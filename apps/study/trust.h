@@ -25,6 +25,11 @@ double trust_error(double first, double second, double third, double ratio);
  * rounding. */
 double trust_size(double size, double of_all);
 
+/** Return the size of momenta up to p, which move coordinates of size q by `moved`. Where that is
+ * only rounding, the momenta are, too, and the size is that of momenta which move the coordinates
+ * by q in the same time. */
+double trust_momentum(double p, double q, double moved);
+
 /** Count the whole digits of a number of that size with such an error, from 0 to
  * TRUST_DIGITS_MOST. */
 int trust_digits(double error, double size);

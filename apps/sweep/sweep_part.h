@@ -1,31 +1,25 @@
-/** The rows of an unfinished sweep, in the file FILE.part beside FILE, from which an interrupted
- * sweep is continued. */
+/** The rows of an unfinished sweep, or of a part of a sweep, in a file beside the sweep's own. An
+ * interrupted sweep is continued from there. */
 #ifndef SWEEP_PART_H
 #define SWEEP_PART_H
-#include <stdint.h>
+#include "sweep/sweep_lines.h"
 
-#include "sweep/sweep_point.h"
-
-/** The file. Rows are written in the order in which they are found. Each line has a sum, which
- * reveals a line that was cut short. */
+/** The file, FILE.part for a sweep without parts, and FILE.K-of-N for part K/N. */
 typedef struct sweep_part {
   char *path;
   FILE *stream;
-  uint64_t key; /**< key of the sweep. Rows of another sweep are not read. */
+  char head[SWEEP_HEAD_SIZE];
 } sweep_part;
-
-/** Return a key of the version of dvi, the problem with a scene's text, the method, the step, the
- * end, and all values. Sweeps with equal keys are the same. */
-uint64_t sweep_key(const sweep_task *task);
 
 /** Open the file for `out` and read its rows into row [points], which are empty before. Complains
  * and returns false if the file is another sweep's, if another process writes it, or if it cannot
  * be written. */
-bool sweep_part_open(sweep_part *part, const char *out, uint64_t key, long points, sweep_row *row);
+bool sweep_part_open(sweep_part *part, const char *out, const sweep_key *key, long points,
+                     sweep_row *row);
 
 /** Add a row. Complains and returns false if it cannot be written. */
 bool sweep_part_add(sweep_part *part, long k, const sweep_row *row);
 
-/** Close the file, and remove it if the sweep is complete. */
-void sweep_part_close(sweep_part *part, bool complete);
+/** Close the file, and remove it if its rows are elsewhere. */
+void sweep_part_close(sweep_part *part, bool elsewhere);
 #endif

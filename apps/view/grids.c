@@ -65,12 +65,23 @@ static bool add_line(grid_series *series, const char *path, const char *line)
   return parse_number(word, &time) && add_file(series, time, path, folder, name, length);
 }
 
+/* List the times of a file that has all grids. */
+static int open_stored(grid_series *series, const char *path)
+{
+  const hdf5_views_content *content = &series->stored.content;
+  int code = stored_grids_open(&series->stored, path);
+  for (int64_t k = 0; k < content->steps && code == DONE; k++)
+    if (!add_file(series, content->time[k], "", 0, path, strlen(path))) code = no_memory();
+  return code;
+}
+
 int grid_series_read(const char *path, grid_series *series)
 {
   const char *ending = strrchr(path, '.');
   char line[4096];
   bool good = true, ended = false;
   *series = (grid_series){0};
+  if (stored_grids_are_wanted(path)) return open_stored(series, path);
   if (ending == NULL || strcmp(ending, ".pvd") != 0)
     return add_file(series, 0, "", 0, path, strlen(path)) ? DONE : no_memory();
   FILE *stream = fopen(path, "r");
@@ -96,6 +107,7 @@ void grid_series_clear(grid_series *series)
   for (int k = 0; k < series->count; k++) free(series->path[k]);
   free(series->path);
   free(series->time);
+  stored_grids_close(&series->stored);
   *series = (grid_series){0};
 }
 
@@ -178,11 +190,17 @@ static int take_grid(grid_frames *g, int at, const vtu_grid *grid, const char *p
   return finite ? DONE : refuse(path, "it has numbers that are not finite, or too large to draw");
 }
 
+static int read_grid(const grid_series *series, int k, vtu_grid *grid)
+{
+  return series->stored.file != NULL ? stored_grids_read(&series->stored, k, series->path[k], grid)
+                                     : vtu_read(series->path[k], grid);
+}
+
 /* Tell whether the points of a later grid are not those of the first one. */
-static int find_motion(grid_frames *g, const char *path)
+static int find_motion(grid_frames *g, const grid_series *series, int k)
 {
   vtu_grid last;
-  const int code = vtu_read(path, &last);
+  const int code = read_grid(series, k, &last);
   if (code == DONE)
     g->moves = last.points == g->first.points &&
                memcmp(last.point, g->first.point, (size_t)last.points * 3 * sizeof *last.point) !=
@@ -197,7 +215,7 @@ static int read_frames(grid_frames *g, const grid_series *series, const int *fra
   for (int k = 0; k < g->frames && code == DONE; k++) {
     vtu_grid grid;
     const char *path = series->path[frame[k]];
-    code = vtu_read(path, &grid);
+    code = read_grid(series, frame[k], &grid);
     if (code == DONE) code = take_grid(g, k, &grid, path);
     vtu_clear(&grid);
   }
@@ -210,10 +228,10 @@ int grid_frames_read(const grid_series *series, int *frames, int *frame, int nam
   const viewpoint above = {.is_flat = true};
   const int given = *frames;
   memset(g, 0, sizeof *g);
-  int code = vtu_read(series->path[frame[0]], &g->first);
+  int code = read_grid(series, frame[0], &g->first);
   if (code == DONE) code = choose_fields(g, series->path[frame[0]], names, name);
   if (code == DONE && !skin_make(&g->first, &above, &g->surface)) code = FAILED;
-  if (code == DONE) code = find_motion(g, series->path[frame[given - 1]]);
+  if (code == DONE) code = find_motion(g, series, frame[given - 1]);
   if (code != DONE) return code;
   g->frames = *frames = frames_with_room(g, given);
   for (int k = 1; k < *frames; k++)

@@ -1,4 +1,4 @@
-/** A field at the times of a run: a series of grids in .vtu files. */
+/** A field at the times of a run: a series of grids in .vtu files, or in one file of HDF5. */
 #ifndef VIEW_GRIDS_H
 #define VIEW_GRIDS_H
 #include <stdbool.h>
@@ -6,12 +6,14 @@
 
 #include "picture/skin.h"
 #include "view/page.h"
+#include "view/stored_grids.h"
 
-/** The files of a series, in the order of time. */
+/** The grids of a series, in the order of time. */
 typedef struct grid_series {
   int count, room;
-  double *time; /**< [count] */
-  char **path;  /**< [count] */
+  double *time;        /**< [count] */
+  char **path;         /**< [count] */
+  stored_grids stored; /**< the file that has all of them, or none */
 } grid_series;
 
 /** What is drawn of a series: the surface of its first grid, and values at all its times. */
@@ -25,8 +27,8 @@ typedef struct grid_frames {
   float *value[VTU_FIELDS]; /**< [fields][frames][points or cells] */
 } grid_frames;
 
-/** Read the list of a series, FILE.pvd, or take a single FILE.vtu. Returns DONE, or complains and
- * returns the exit code. Call grid_series_clear afterwards in any case. */
+/** Read the list of a series, FILE.pvd, or open FILE.vtkhdf, or take a single FILE.vtu. Returns
+ * DONE, or complains and returns the exit code. Call grid_series_clear afterwards in any case. */
 int grid_series_read(const char *path, grid_series *series);
 void grid_series_clear(grid_series *series);
 

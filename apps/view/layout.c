@@ -6,7 +6,7 @@
 
 #include "cli/command.h"
 
-enum { ROTATION = 9, CHAIN_LEAST = 3 };
+enum { ROTATION = 9, CHAIN_LEAST = 3, FAMILY_LEAST = 2 };
 
 /* The names of the coordinates. */
 typedef struct names {
@@ -89,6 +89,16 @@ static int indices_of(const char *name, int index[2], size_t *stem)
   return count;
 }
 
+/* Return whether the names i and next belong to one chain or net. */
+static bool is_next(const names *n, int i, int next)
+{
+  int a[2] = {0}, b[2] = {0};
+  size_t stem, other;
+  const int count = indices_of(name_of(n, i), a, &stem);
+  return count > 0 && count == indices_of(name_of(n, next), b, &other) && stem == other &&
+         strncmp(name_of(n, i), name_of(n, next), stem) == 0;
+}
+
 /* ---- points and bodies ---- */
 
 static view_point *add_point(view_layout *layout, const char *name, size_t length)
@@ -155,6 +165,38 @@ static int take_body(view_layout *layout, const names *n, int i)
   return taken;
 }
 
+/* Return whether the names from i and from `other` on differ in their first letter only, which is
+ * that axis, and are one net or chain. */
+static bool is_axis_of(const names *n, int i, int other, int count, char axis)
+{
+  for (int k = 0; k < count; k++) {
+    const char *first = name_of(n, i + k), *name = name_of(n, other + k);
+    if (name[0] != axis || strcmp(first + 1, name + 1) != 0) return false;
+  }
+  return true;
+}
+
+/* Take the points of a net or chain whose axes are families of their own, x_1_1, x_1_2 .. and
+ * y_1_1, y_1_2 .. Returns the number of coordinates. */
+static int take_families(view_layout *layout, const names *n, int i)
+{
+  int count = 1;
+  if (name_of(n, i)[0] != 'x') return 0;
+  while (is_next(n, i, i + count)) count++;
+  if (count < FAMILY_LEAST || !is_axis_of(n, i, i + count, count, 'y')) return 0;
+  const int axes = is_axis_of(n, i, i + 2 * count, count, 'z') ? 3 : 2;
+  for (int k = 0; k < count; k++) {
+    view_point *p = add_point(layout, "", 0);
+    name_point(p, name_of(n, i + k), 0);
+    for (int a = 0; a < axes; a++) {
+      p->from[a] = i + a * count + k;
+      layout->owner[p->from[a]] = (int)(p - layout->point);
+    }
+  }
+  if (axes == 3) layout->is_plane = false;
+  return axes * count;
+}
+
 static int take_angle(view_layout *layout, const names *n, int i)
 {
   size_t stem;
@@ -164,16 +206,6 @@ static int take_angle(view_layout *layout, const names *n, int i)
 }
 
 /* ---- numbers alone ---- */
-
-/* Return whether the names i and next belong to one chain or net. */
-static bool is_next(const names *n, int i, int next)
-{
-  int a[2] = {0}, b[2] = {0};
-  size_t stem, other;
-  const int count = indices_of(name_of(n, i), a, &stem);
-  return count > 0 && count == indices_of(name_of(n, next), b, &other) && stem == other &&
-         strncmp(name_of(n, i), name_of(n, next), stem) == 0;
-}
 
 /* Draw the numbers of a chain or of a net as heights over their indices. Links follow those in the
  * chain, and in both directions of a net. */
@@ -242,6 +274,7 @@ bool layout_find(int coordinates, word_at name_at, const void *list, view_layout
   for (int i = 0, taken; i < coordinates && good; i += taken > 0 ? taken : 1) {
     taken = take_body(layout, &n, i);
     if (taken == 0) taken = take_point(layout, &n, i);
+    if (taken == 0) taken = take_families(layout, &n, i);
     if (taken == 0) taken = take_angle(layout, &n, i);
   }
   if (good && layout->points == 0 && layout->bodies == 0) good = take_numbers(layout, &n);

@@ -16,6 +16,9 @@ enum { STRIDE = 61 };
 /* Least scale, as a fraction of the energy. A system at rest has no other scale. */
 static const double least_scale = 1e-8;
 
+/* Coordinates that move by less than this fraction of the largest one have roundings only. */
+static const double at_rest = 1e-12;
+
 static bool has_kinetic_energy(const problem *scene)
 {
   return scene->terms->one_form == NULL && scene->terms->hamiltonian == NULL;
@@ -89,6 +92,21 @@ static bool exchanged_energy(energy_watch *w, double t, double energy, double *c
   return true;
 }
 
+static void measure_motion(energy_watch *w)
+{
+  const double *q = dvi_integrator_q(w->integrator);
+  for (int i = 0; i < w->scene->nq; i++) {
+    w->moved = fmax(w->moved, fabs(q[i] - w->start[i]));
+    w->largest = fmax(w->largest, fabs(q[i]));
+  }
+}
+
+/* Energies of roundings alone have no scale. */
+static bool is_at_rest(const energy_watch *w)
+{
+  return has_kinetic_energy(w->scene) && w->moved <= at_rest * w->largest;
+}
+
 static double mean_scale(const energy_watch *w)
 {
   const double span = fabs(w->t - w->t_start);
@@ -123,6 +141,7 @@ static void energy_watch_look(energy_watch *w)
   if (w->blind) return;
   w->exchanged += T * fabs(t - w->t);
   w->t = t;
+  measure_motion(w);
   if (w->looks == ENERGY_LOOKS_MAX) energy_watch_halve(w);
   w->look[w->looks++] = (energy_look){
       .t = t,
@@ -200,6 +219,7 @@ energy_verdict energy_watch_end(energy_watch *w)
     verdict.ratio = ratio;
     verdict.t = seen->t;
   }
-  if (verdict.ratio > w->bound) verdict.passed = isnan(w->passed) ? verdict.t : w->passed;
+  if (verdict.ratio > w->bound && !is_at_rest(w))
+    verdict.passed = isnan(w->passed) ? verdict.t : w->passed;
   return verdict;
 }

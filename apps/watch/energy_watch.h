@@ -6,7 +6,8 @@
  * it is larger. Near a pericentre both terms of the energy are large, and so is the energy that a
  * good method exchanges between them. A Hamiltonian or a one-form has no kinetic energy. Its scale
  * is the mean change of the energy if coordinates and momenta go back, one at a time, to their
- * start.
+ * start. A Lagrangian system whose coordinates do not move beyond their rounding is at rest, and
+ * has no errors to report.
  *
  * Systems that depend on time have no such watch, but that of growth_watch.h. The first 32 steps
  * are looked at, every 61st later on, and the last. */
@@ -35,6 +36,7 @@ typedef struct energy_watch {
   double t, exchanged; /**< time of the last look, and integral of the kinetic energy until then */
   /** number of looks that are kept, and the number that is set back at the next look */
   int looks, next;
+  double moved, largest; /**< largest change of a coordinate, and largest coordinate */
   double passed; /**< time when the bound was first passed, in the scale until then, or NaN */
   energy_look look[ENERGY_LOOKS_MAX];
 } energy_watch;

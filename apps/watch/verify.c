@@ -45,6 +45,7 @@ typedef struct verifier {
   double seconds;           /* process time of the levels */
   double witness_tolerance; /* tolerance of the witness */
   double refinement;        /* refinement of the current level */
+  double moved;             /* largest change of a coordinate in the first run */
   long steps;
   bool by_event; /* an event ended a run */
   bool refused;  /* the witness does not take the system */
@@ -71,6 +72,29 @@ static bool read_numbers(verifier *v, double *number)
   return true;
 }
 
+/* Measure the sizes of the numbers, and how far the coordinates are from the start. */
+static void measure_motion(verifier *v)
+{
+  const double *number = v->trust.number[0];
+  for (int i = 0; i < v->trust.count; i++)
+    v->trust.size[i] = fmax(v->trust.size[i], fabs(number[i]));
+  for (int i = 0; i < v->scene->nq; i++)
+    v->moved = fmax(v->moved, fabs(number[1 + i] - v->scene->q[i]));
+}
+
+/* Give the momenta of a system at rest, which are roundings, a size. Returns that of all. A
+ * Hamiltonian need not move coordinates by momenta. */
+static double measure_momenta(verifier *v, double q)
+{
+  const int nv = v->scene->nv;
+  double *size = v->trust.size + 1 + v->scene->nq;
+  const double p = norm_largest(nv, size);
+  if (v->scene->terms->one_form != NULL || v->scene->terms->hamiltonian != NULL) return p;
+  const double of_all = trust_momentum(p, q, v->moved);
+  for (int i = 0; i < nv && of_all > p; i++) size[i] = of_all;
+  return of_all;
+}
+
 /* Observe the sizes of the numbers in the first run. The vector of its end serves as working memory
  * until the end. */
 static int verify_observe(dvi_integrator *integrator, void *user)
@@ -87,8 +111,7 @@ static int verify_observe(dvi_integrator *integrator, void *user)
   }
   if (!energy_look_due(steps)) return 0;
   if (!read_numbers(v, v->trust.number[0])) return -1;
-  for (int i = 0; i < v->trust.count; i++)
-    v->trust.size[i] = fmax(v->trust.size[i], fabs(v->trust.number[0][i]));
+  measure_motion(v);
   return 0;
 }
 
@@ -97,10 +120,8 @@ static int verify_observe(dvi_integrator *integrator, void *user)
 static void measure_result_sizes(verifier *v)
 {
   const int nq = v->scene->nq, nv = v->scene->nv, first = 1 + nq + nv;
-  for (int i = 0; i < v->trust.count; i++)
-    v->trust.size[i] = fmax(v->trust.size[i], fabs(v->trust.number[0][i]));
-  const double q = norm_largest(nq, v->trust.size + 1),
-               p = norm_largest(nv, v->trust.size + 1 + nq);
+  measure_motion(v);
+  const double q = norm_largest(nq, v->trust.size + 1), p = measure_momenta(v, q);
   for (int k = 0; k < v->columns.count; k++) {
     const shown_column *column = &v->columns.column[k];
     double *size = &v->trust.size[first + k];

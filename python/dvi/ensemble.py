@@ -67,18 +67,24 @@ class Ensemble:
     def record(self, h: float, steps: int, every: int = 1) -> tuple[Array, Array, Array]:
         """Take steps, and return t [rows], q [rows, nq, members] and p [rows, nv, members].
 
-        There is a row at the start, and one after each `every` steps, which divide `steps`.
+        There is a row at the start, and one after each `every` steps, which divide `steps`. An
+        exception has the rows before it, as such a tuple, as its `rows`.
         """
         if every < 1 or steps < 0 or steps % every != 0:
             raise ValueError(f"steps = {steps} are no multiple of every = {every}")
         count = steps // every + 1
-        t = np.empty((count, self.members))
+        t = np.full((count, self.members), np.nan)
         q, p = (np.empty((count, n, self.members)) for n in (self.system.nq, self.system.nv))
         rows = ffi.new("dvi_ensemble_rows *", {"size": ffi.sizeof("dvi_ensemble_rows"),
                                                "t": numbers(t), "q": numbers(q),
                                                "p": numbers(p)})
-        with self._owned:
-            self._check(lib.dvi_ensemble_record(self.pointer, h, every, count, rows))
+        try:
+            with self._owned:
+                self._check(lib.dvi_ensemble_record(self.pointer, h, every, count, rows))
+        except BaseException as failure:
+            kept = int(np.isfinite(t).all(axis=1).sum())
+            failure.rows = t[:kept, 0], q[:kept], p[:kept]  # type: ignore[attr-defined]
+            raise
         return t[:, 0], q, p
 
     def _state(self, which: int) -> Array:

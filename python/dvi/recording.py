@@ -175,8 +175,8 @@ class Run:
         return axes
 
     def __repr__(self) -> str:
-        return (f"<Run of {self.method}: {len(self)} rows from t = {self.t[0]:g} to "
-                f"{self.t[-1]:g}, {self.end}>")
+        span = f"from t = {self.t[0]:g} to {self.t[-1]:g}, " if len(self) > 0 else ""
+        return f"<Run of {self.method}: {len(self)} rows {span}{self.end}>"
 
     def _repr_html_(self) -> str:
         """Return a table of the first and last rows, for notebooks."""
@@ -199,7 +199,9 @@ def _rows(recording: Owned, part: int, rows: int) -> Array | None:
     pointer = lib.dvi_recording_part(recording.pointer, part, width)
     if pointer == ffi.NULL:
         return None
-    return array(ffi.cast("double *", pointer), (rows, width[0]), recording)
+    found = array(ffi.cast("double *", pointer), (rows, width[0]), recording)
+    found.flags.writeable = False  # velocities and invariants are evaluated from them later
+    return found
 
 
 def _event(recording: Owned, i: int, names: Sequence[str], system: System) -> Event:
@@ -276,7 +278,8 @@ def record(integrator: Integrator, h: float, t_end: float, every: int | None = N
     failure: BaseException | None = error(status) if status != lib.DVI_OK else None
     recording = Owned("recording", made[0]) if made[0] != ffi.NULL else None
     result = Run(system, integrator.method, recording, [name for name, _ in found]) \
-        if recording is not None and lib.dvi_recording_rows(made[0]) > 0 else None
+        if recording is not None and (failure is None or
+                                      lib.dvi_recording_rows(made[0]) > 0) else None
     try:
         system.raise_failure()
     except BaseException as raised:

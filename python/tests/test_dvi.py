@@ -377,3 +377,16 @@ def test_files_of_the_command(kepler, tmp_path):
                     "--t-end", "1", "--out", table], check=True)
     assert list(dvi.read(table)["status"]) == ["DVI_OK", "DVI_OK"]
     assert list(dvi.read(table)["e"]) == [0, 0.5]
+
+
+def test_a_run_that_ends_before_its_first_row_has_its_events(kepler):
+    hit = lambda t, q, v: q[1] - 0.1  # noqa: E731
+    hit.terminal = True
+    run = kepler.run("verlet", h=0.01, t_end=5, times=[4.0], events={"hit": hit})
+    assert len(run) == 0 and [event.name for event in run.events] == ["hit"] and "0 rows" in repr(run)
+
+
+def test_recorded_arrays_cannot_be_changed(kepler):
+    run = kepler.run("verlet", h=0.01, t_end=0.1)
+    with pytest.raises(ValueError):
+        run.q[0, 0] = 1

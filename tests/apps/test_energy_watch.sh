@@ -106,5 +106,19 @@ pendulum 0 1e-3 && silent 'nearly so' run pendulum.yaml --final
 pendulum 0 'pi + 1e-6' && silent 'a small motion' run pendulum.yaml --final
 pendulum 1e6 pi/2 && silent 'a constant' run pendulum.yaml --final
 pendulum 1e6 pi/2 && warned 'a constant hides nothing' run pendulum.yaml --h 1.9 --final
+cat >net.yaml <<END
+coordinates: {"x[4]": scalar, "y[4]": scalar}
+kinetic: sum(i, x[i]'^2 + y[i]'^2)/2
+potentials:
+  springs: 40*sum(i=1..3, (hypot(x[i+1] - x[i], y[i+1] - y[i]) - 0.2)^2)
+  hook: 40*(hypot(x[1], y[1]) - 0.2)^2
+initial: {"x[i]": "0.12*i", "y[i]": "-0.16*i"}
+method: galerkin:degree=2
+step: 0.01
+until: 10
+END
+silent 'a net at rest' run net.yaml --final
+sed 's/0.16\*i/0.16001*i/' net.yaml >moved.yaml
+warned 'a small motion hides nothing' run moved.yaml --method verlet --h 0.1 --final
 silent 'a drive' run driven-pendulum --method midpoint --h 0.5 --final
 finish

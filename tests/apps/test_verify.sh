@@ -237,6 +237,20 @@ done
 paste scale.0.1 scale.0.005 | awk '{ exit !($1 > $2/1.5 && $1 < 1.5*$2) }' ||
   fail "the scale of laplace_y depends on the step: $(paste scale.0.1 scale.0.005)"
 
+# Momenta of a system at rest are roundings, and have the digits of its coordinates.
+cat >rest.yaml <<'END'
+coordinates: {"x[4]": scalar, "y[4]": scalar}
+kinetic: sum(i, x[i]'^2 + y[i]'^2)/2
+potentials:
+  springs: 40*sum(i=1..3, (hypot(x[i+1] - x[i], y[i+1] - y[i]) - 0.2)^2)
+  hook: 40*(hypot(x[1], y[1]) - 0.2)^2
+initial: {"x[i]": "0.12*i", "y[i]": "-0.16*i"}
+method: galerkin:degree=2
+step: 0.01
+until: 10
+END
+expect 0 'a net at rest' run rest.yaml --verify --digits 10
+
 # A membrane has no more energy than its motion, and no more digits of it than are right.
 cat >square.yaml <<'END'
 mesh: {generator: staggered, cells: [40, 40], size: [1, 1]}

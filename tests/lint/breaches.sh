@@ -16,7 +16,7 @@ clean() {
     mkdir -p lib/src/$room
   done
   mkdir -p lib/include/dvi apps/cli apps/problems apps/examples tests/method/element docs/methods
-  mkdir -p docs/fields cmake .ci
+  mkdir -p docs/fields cmake .ci lib/petsc/src
   printf '/** One. */\nint dvi_one(int a);\n' >lib/include/dvi/one.h
   printf '#include <dvi/one.h>\n\nint dvi_one(int a)\n{\n  return a;\n}\n' >lib/src/core/one.c
   printf '#include <dvi/one.h>\n' >lib/src/method/element/leap.c
@@ -87,6 +87,9 @@ for gate in layers rooms text documented methods messages sections docs headers 
 done
 
 sees layers lib/src/core/one.c '#include "num/linear.h"'
+sees layers lib/src/core/one.c '#include <mpi.h>'
+sees layers apps/cli/one.c '#include <dvi/petsc.h>'
+sees layers lib/petsc/src/one.c '#include "field/mesh/mesh.h"'
 sees layers lib/src/num/one.c '#include "system/system.h"'
 sees layers lib/src/solve/one.c '#include "system/system.h"'
 sees layers lib/src/solve/one.c '#include "step/element/action.h"'

@@ -16,4 +16,4 @@ exec "$3" -j 2 --quiet --std=c11 --language=c --enable=warning,style,performance
   --suppress=ctuArrayIndex:apps/mechanics/quad_step.c --suppress=redundantContinue \
   --suppress=shadowFunction --suppress=duplicateCondition \
   --suppress=normalCheckLevelMaxBranches --suppress=checkersReport \
-  -I lib/include -I lib/src -I apps/problems lib/src apps
+  -I lib/include -I lib/src -I apps/problems lib/src lib/petsc apps

@@ -110,6 +110,8 @@ BEGIN {
   also["field/mesh/file march/whole_file.h"] = 1
   # libdvi shares these headers with sister libraries (lib/exports.map, DVI_PRIVATE).
   also["text core/memory.h"] = also["expr/compile num/simd/lanes.h"] = 1
+  # The component petsc sees these headers of the library.
+  also["petsc core/memory.h"] = also["petsc core/status.h"] = 1
   # Standard headers that a public header may need.
   split("math.h stdarg.h stddef.h stdint.h string.h", open_headers)
   for (i in open_headers) standard[open_headers[i]] = 1
@@ -126,6 +128,15 @@ function part_of_sundials(header) {
 
 function part_of_suitesparse(header) {
   return header ~ /^(suitesparse\/)?(klu|amd|colamd|btf|SuiteSparse_config)\.h$/
+}
+
+function part_of_mpi(header) { return header ~ /^(mpi|petsc[a-z]*)\.h$/ || header == "dvi/petsc.h" }
+
+# lib/petsc is the only component that is linked to PETSc and MPI.
+function check_component(quoted, header) {
+  if (quoted && header ~ /\// && !(("petsc " header) in also))
+    breach("lib/petsc may include public headers, and of libdvi's own core/memory.h and " \
+           "core/status.h")
 }
 
 function check_library(quoted, header,   target) {
@@ -188,6 +199,7 @@ FNR == 1 {
     if (!(room in sees)) breach("unknown room " room ": add it to tests/lint/layers.awk")
   }
   else if (FILENAME ~ /^lib\/include\//) zone = "public"
+  else if (FILENAME ~ /^lib\/petsc\/src\//) zone = "component"
   else if (sub(/^apps\//, "", room)) { zone = "user"; sub(/\/.*/, "", room) }
 }
 
@@ -197,6 +209,9 @@ FNR == 1 {
   quoted = header ~ /^"/
   sub(/^["<]/, "", header)
   sub(/[">].*/, "", header)
+  if (part_of_mpi(header) && FILENAME !~ /^(lib|apps|tests)\/petsc\//)
+    breach("call PETSc and MPI in lib/petsc, apps/petsc and tests/petsc only")
+  if (zone == "component") check_component(quoted, header)
   if (zone == "library") check_library(quoted, header)
   if (zone == "public") check_public(quoted, header)
   if (zone == "user") check_user(quoted, header)
@@ -213,7 +228,7 @@ zone == "library" && /^(WIDE|FUSED) static .*\(/ {
 }
 
 # Text in quotes is left out, because the library writes C, too.
-zone == "library" {
+zone == "library" || zone == "component" {
   code = $0
   gsub(/"([^"\\]|\\.)*"/, "\"\"", code)
   if (code ~ /(^|[^A-Za-z0-9_])(printf|puts|putchar|exit|abort|assert)\(|std(out|err)/)
@@ -236,7 +251,7 @@ function check_heap() {
 }
 
 FILENAME != "lib/src/core/number.c" { check_numbers() }
-zone == "library" && FILENAME != "lib/src/core/memory.c" { check_heap() }
+(zone == "library" || zone == "component") && FILENAME != "lib/src/core/memory.c" { check_heap() }
 # One file measures how SUNDIALS was compiled, by a function that libdvi has for it alone.
 zone == "user" && FILENAME == "apps/bench/sundials_build.c" { gsub(/dvi__sundials_sum_time/, "") }
 zone == "user" && /dvi__/ { breach("use public names: apps/ may not use internal ones") }

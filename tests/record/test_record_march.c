@@ -126,7 +126,7 @@ static unsigned forms_of(const dvi_march *march)
 {
   unsigned found = 0;
   for (int form = 0; form < 3; form++)
-    if (dvi_march_size(march, (dvi_march_form)form) > 0) found |= DVI_RECORD_A << form;
+    if (dvi_march_size(march, (dvi_march_form)form) > 0) found |= (unsigned)DVI_RECORD_A << form;
   return found;
 }
 
@@ -153,7 +153,7 @@ static void check_row(const dvi_recording *made, int64_t row, const dvi_march *m
   ck_assert_double_eq(part(made, DVI_RECORD_T, &width)[row], dvi_march_time(march));
   for (int form = 0; form < 3; form++) {
     if (dvi_march_size(march, (dvi_march_form)form) == 0) continue;
-    const double *rows = part(made, DVI_RECORD_A << form, &width);
+    const double *rows = part(made, (unsigned)DVI_RECORD_A << form, &width);
     double *now = sample_march(march, (dvi_march_form)form);
     ck_assert_int_eq(width, dvi_march_size(march, (dvi_march_form)form));
     ck_assert_mem_eq(rows + row * width, now, (size_t)width * sizeof *now);

@@ -1,8 +1,9 @@
 #include "support/meshes.h"
 
-#include <check.h>
 #include <math.h>
 #include <stdlib.h>
+
+#include "support/suite.h"
 
 double random_number(unsigned long long *state)
 {

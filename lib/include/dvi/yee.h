@@ -125,6 +125,25 @@ typedef struct dvi_yee_flux {
   double lower[3], upper[3];
 } dvi_yee_flux;
 
+/** Processes that hold a grid together. Its last axis is divided: each of them has the boxes from
+ *  floor(cells*rank/count) on, and the nodes at their lower ends; the last one also has the last
+ *  node. All of them have the same terms, but for this, and make the same calls in the same order.
+ *  A function returns 0, or another number on all processes if it failed on one of them. */
+typedef struct dvi_yee_ranks {
+  size_t size; /**< sizeof(dvi_yee_ranks) */
+  int rank;    /**< the number of this process, from 0 */
+  int count;   /**< the number of processes, 1 or more */
+  /** Send numbers [count] to the process rank + way, where `way` is 1 or -1, and receive as many of
+   *  the process rank - way. With `around` the first process follows the last one. Without it, the
+   *  process at an end sends to none, or receives of none. */
+  int (*pass)(int way, int around, int64_t count, const double *sent, double *received, void *user);
+  /** Set numbers [count] to their sums over all processes. They do not overflow. */
+  int (*sum)(int count, int64_t *number, void *user);
+  /** Set numbers [count] to the largest ones of all processes. */
+  int (*largest)(int count, double *number, void *user);
+  void *user;
+} dvi_yee_ranks;
+
 /** What a march on boxes consists of. Zero means the default. Components of points and directions
  *  beyond the grid's axes do not count, but for those of E. */
 typedef struct dvi_yee_terms {
@@ -147,8 +166,10 @@ typedef struct dvi_yee_terms {
   double span;
   int threads; /**< default 1. The bits do not depend on it */
   /** Steps that are taken together while their fields are in a cache. Axes y and z that repeat
-   *  themselves allow only 1. The bits do not depend on it. Default: as many as pay */
+   *  themselves, and a divided grid, allow only 1. The bits do not depend on it. Default: as many
+   *  as pay */
   int together;
+  const dvi_yee_ranks *ranks; /**< copied. Default: one process has the whole grid */
 } dvi_yee_terms;
 
 #ifdef __cplusplus
@@ -171,21 +192,29 @@ extern "C" {
  *  Nodes and boxes in absorbing layers, on absorbing ends, and on the surface of a wave's box are
  *  left out of charges and divergences.
  *
+ *  On a divided grid the values of forms are those of this process, numbered as on a grid of its
+ *  own boxes and nodes, and observables are those of the whole grid. All have the bits of one
+ *  process. A saved state is that of this process, for the same one of as many. After processes
+ *  could not speak with each other, a march must be started again, or loaded.
+ *
  *  @retval DVI_BAD_ARGUMENT     an argument is not as described: axes, ends, media, places, or a
  *                               step that is not stable. dvi_last_error() has the bound and its
  *                               place
  *  @retval DVI_BAD_SIZE         a count is out of range
  *  @retval DVI_CALLBACK_FAILED  a medium or a density failed
  *  @retval DVI_NOT_FINITE       a medium or a density is not finite
- *  @retval DVI_UNSUPPORTED      a combination that is not there, such as a wave with a phase
+ *  @retval DVI_UNSUPPORTED      a combination that is not there, such as a wave with a phase, or a
+ *                               divided grid of one axis
  *  @retval DVI_NO_MEMORY        there is no memory */
 dvi_status dvi_yee_create(const dvi_yee_terms *terms, dvi_march **march);
 
-/** Return the number of values of a form, of the real ones. 0 if the terms are not as described. */
+/** Return the number of values of a form, of the real ones, that this process has. 0 if the terms
+ *  are not as described. */
 int64_t dvi_yee_size(const dvi_yee_terms *terms, dvi_march_form form);
 
 /** Return the number of the cell of a form's component (0 to 2 for x to z) at the place
- *  index [axes] among its places, or -1 if there is none. */
+ *  index [axes] among the places of the whole grid, or -1 if there is none, or if another process
+ *  has it. */
 int64_t dvi_yee_place(const dvi_yee_terms *terms, dvi_march_form form, int component,
                       const int *index);
 

@@ -1,12 +1,12 @@
 /* A mesh divided among processes: the graph of its n-cells goes to a partitioner of PETSc, and the
  * values of ghosts come through a star forest for each degree (PetscSF). */
 #include <dvi/petsc.h>
-#include <petscmat.h>
 #include <petscsf.h>
 #include <string.h>
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "owners.h"
 
 enum { DEGREES = DVI_MESH_DIMENSION_MAX + 1, NAME_SIZE = 32 };
 
@@ -16,15 +16,6 @@ struct dvi_division {
   char partitioner[NAME_SIZE];
   dvi_division_facts facts;
 };
-
-static dvi_status check_petsc(PetscErrorCode code)
-{
-  const char *words = NULL;
-  if (code == 0) return DVI_OK;
-  (void)PetscErrorMessage(code, &words, NULL);
-  return dvi__fail(DVI_SOLVER_FAILED, "petsc: %s (code %d)", words != NULL ? words : "failed",
-                   (int)code);
-}
 
 /* ---- how processes speak with each other ---- */
 
@@ -49,103 +40,6 @@ static int largest(int count, double *number, void *user)
                        ((const dvi_division *)user)->comm);
 }
 
-/* ---- the graph of the n-cells ---- */
-
-/* Cells `first` to `last`-1 of the graph, in compressed rows. */
-typedef struct graph {
-  int64_t first, last;
-  PetscInt *start, *neighbour;
-} graph;
-
-/* Fill in the two n-cells at each facet, or -1. Of more than two the first ones count. */
-static int *find_sides(const dvi_matrix *d)
-{
-  int *side = DVI_NEW(int, 2 * d->columns);
-  for (int64_t f = 0; f < 2 * d->columns && side != NULL; f++) side[f] = -1;
-  for (int64_t i = 0; i < d->rows * d->width && side != NULL; i++) {
-    int *at = side + 2 * (int64_t)d->column[i];
-    if (at[0] < 0)
-      at[0] = (int)(i / d->width);
-    else if (at[1] < 0)
-      at[1] = (int)(i / d->width);
-  }
-  return side;
-}
-
-/* Fill in the rows. PETSc owns them from then on. */
-static PetscErrorCode fill_graph(const dvi_matrix *d, const int *side, graph *g)
-{
-  PetscInt entries = 0;
-  PetscCall(PetscMalloc1((size_t)(g->last - g->first + 1), &g->start));
-  PetscCall(PetscMalloc1((size_t)((g->last - g->first) * d->width + 1), &g->neighbour));
-  for (int64_t c = g->first; c < g->last; c++) {
-    g->start[c - g->first] = entries;
-    for (int64_t i = c * d->width; i < (c + 1) * d->width; i++) {
-      const int *at = side + 2 * (int64_t)d->column[i];
-      const int other = at[0] == c ? at[1] : at[0];
-      if (other >= 0) g->neighbour[entries++] = other;
-    }
-  }
-  g->start[g->last - g->first] = entries;
-  return 0;
-}
-
-static PetscErrorCode partition(MPI_Comm comm, const char *name, int64_t cells, graph *g,
-                                PetscInt *owner)
-{
-  MatPartitioning divider;
-  Mat adjacency;
-  IS parts;
-  const PetscInt *part;
-  PetscCall(MatCreateMPIAdj(comm, (PetscInt)(g->last - g->first), (PetscInt)cells, g->start,
-                            g->neighbour, NULL, &adjacency));
-  PetscCall(MatPartitioningCreate(comm, &divider));
-  PetscCall(MatPartitioningSetAdjacency(divider, adjacency));
-  PetscCall(MatPartitioningSetType(divider, name));
-  PetscCall(MatPartitioningApply(divider, &parts));
-  PetscCall(ISGetIndices(parts, &part));
-  PetscCall(PetscArraycpy(owner + g->first, part, (size_t)(g->last - g->first)));
-  PetscCall(ISRestoreIndices(parts, &part));
-  PetscCall(ISDestroy(&parts));
-  PetscCall(MatPartitioningDestroy(&divider));
-  return MatDestroy(&adjacency);
-}
-
-/* Tell all processes the owners that each has found. */
-static PetscErrorCode gather(MPI_Comm comm, int64_t cells, int ranks, PetscInt *owner)
-{
-  for (int r = 0; r < ranks; r++) {
-    const int64_t first = cells * r / ranks, last = cells * (r + 1) / ranks;
-    PetscCallMPI(MPI_Bcast(owner + first, (int)(last - first), MPIU_INT, r, comm));
-  }
-  return 0;
-}
-
-static dvi_status find_owners(const dvi_mesh *mesh, const dvi_division *division, int *owner)
-{
-  const int ranks = division->facts.ranks, rank = division->facts.rank;
-  const int64_t cells = dvi_mesh_count(mesh, dvi_mesh_dimension(mesh));
-  dvi_matrix d;
-  if (strcmp(division->partitioner, "blocks") == 0 || ranks == 1) {
-    for (int64_t c = 0; c < cells; c++) owner[c] = (int)(c * ranks / cells);
-    return DVI_OK;
-  }
-  DVI_TRY(dvi_mesh_incidence(mesh, dvi_mesh_dimension(mesh) - 1, &d));
-  graph g = {.first = cells * rank / ranks, .last = cells * (rank + 1) / ranks};
-  int *side = find_sides(&d);
-  PetscInt *found = DVI_NEW(PetscInt, cells);
-  dvi_status status = side != NULL && found != NULL
-                          ? check_petsc(fill_graph(&d, side, &g))
-                          : dvi__fail(DVI_NO_MEMORY, "petsc: no memory for a graph");
-  if (status == DVI_OK)
-    status = check_petsc(partition(division->comm, division->partitioner, cells, &g, found));
-  if (status == DVI_OK) status = check_petsc(gather(division->comm, cells, ranks, found));
-  for (int64_t c = 0; c < cells && status == DVI_OK; c++) owner[c] = (int)found[c];
-  dvi__release(side);
-  dvi__release(found);
-  return status;
-}
-
 /* ---- star forests ---- */
 
 /* Own cells, or the others, of a degree of the share: their numbers in the whole mesh, and in the
@@ -168,51 +62,98 @@ static PetscErrorCode select_cells(const dvi_mesh *share, int k, int rank, int o
   return 0;
 }
 
-static PetscErrorCode plant(dvi_division *division, const dvi_mesh *share, int64_t total, int k)
+static PetscErrorCode drop_selection(selection *s)
 {
-  PetscLayout layout;
-  selection own, ghost;
-  PetscCall(select_cells(share, k, division->facts.rank, 1, &own));
-  PetscCall(select_cells(share, k, division->facts.rank, 0, &ghost));
-  PetscCall(PetscLayoutCreateFromSizes(division->comm, PETSC_DECIDE, (PetscInt)total, 1, &layout));
-  PetscCall(PetscSFCreateByMatchingIndices(layout, own.count, own.number, own.place, 0, ghost.count,
-                                           ghost.number, ghost.place, 0, NULL,
-                                           &division->forest[k]));
-  PetscCall(PetscSFSetUp(division->forest[k]));
-  division->facts.owned[k] = own.count;
-  division->facts.ghosts[k] = ghost.count;
-  division->facts.bytes_in[k] = ghost.count * (int64_t)sizeof(double);
-  PetscCall(PetscLayoutDestroy(&layout));
-  PetscCall(PetscFree2(own.number, own.place));
-  return PetscFree2(ghost.number, ghost.place);
+  return PetscFree2(s->number, s->place);
 }
 
-static PetscErrorCode plant_all(dvi_division *division, const dvi_mesh *share, const dvi_mesh *mesh)
+/* Own cells and ghosts of all degrees. */
+typedef struct selections {
+  selection own[DEGREES], ghost[DEGREES];
+} selections;
+
+static PetscErrorCode select_all(const dvi_mesh *share, int rank, selections *s)
 {
-  const int n = dvi_mesh_dimension(share);
+  for (int k = 0; k <= dvi_mesh_dimension(share); k++) {
+    PetscCall(select_cells(share, k, rank, 1, s->own + k));
+    PetscCall(select_cells(share, k, rank, 0, s->ghost + k));
+  }
+  return 0;
+}
+
+static PetscErrorCode plant(dvi_division *division, const selections *s, int64_t total, int k)
+{
+  const selection *own = s->own + k, *ghost = s->ghost + k;
+  PetscLayout layout;
+  PetscCall(PetscLayoutCreateFromSizes(division->comm, PETSC_DECIDE, (PetscInt)total, 1, &layout));
+  PetscCall(PetscSFCreateByMatchingIndices(layout, own->count, own->number, own->place, 0,
+                                           ghost->count, ghost->number, ghost->place, 0, NULL,
+                                           &division->forest[k]));
+  PetscCall(PetscSFSetUp(division->forest[k]));
+  division->facts.owned[k] = own->count;
+  division->facts.ghosts[k] = ghost->count;
+  division->facts.bytes_in[k] = ghost->count * (int64_t)sizeof(double);
+  return PetscLayoutDestroy(&layout);
+}
+
+static PetscErrorCode plant_all(dvi_division *division, const selections *s, const dvi_mesh *mesh)
+{
+  const int n = dvi_mesh_dimension(mesh);
   PetscMPIInt neighbours = 0;
-  for (int k = 0; k <= n; k++) PetscCall(plant(division, share, dvi_mesh_count(mesh, k), k));
+  for (int k = 0; k <= n; k++) PetscCall(plant(division, s, dvi_mesh_count(mesh, k), k));
   PetscCall(PetscSFGetRootRanks(division->forest[n], &neighbours, NULL, NULL, NULL, NULL));
   division->facts.neighbours = (int)neighbours;
   return 0;
 }
 
+static dvi_status plant_forests(dvi_division *division, const dvi__divider *divider,
+                                const dvi_mesh *share, const dvi_mesh *mesh)
+{
+  selections s = {0};
+  dvi_status status = dvi__agree_all(divider,
+                                     dvi__check_petsc(select_all(share, divider->rank, &s)));
+  if (status == DVI_OK)
+    status = dvi__agree_all(divider, dvi__check_petsc(plant_all(division, &s, mesh)));
+  for (int k = 0; k < DEGREES; k++) {
+    (void)drop_selection(s.own + k);
+    (void)drop_selection(s.ghost + k);
+  }
+  return status;
+}
+
 /* ---- create ---- */
+
+/* All processes must call PETSc, which has been started and has not ended. */
+static dvi_status check_started(void)
+{
+  PetscBool started = PETSC_FALSE, ended = PETSC_FALSE;
+  (void)PetscInitialized(&started);
+  (void)PetscFinalized(&ended);
+  if (started && !ended) return DVI_OK;
+  return dvi__fail(DVI_BAD_ARGUMENT, "petsc: start PETSc before a mesh is divided "
+                                     "(PetscInitialize)");
+}
 
 static dvi_status choose(const dvi_division_options *options, dvi_division *division)
 {
-  const char *name = options != NULL && options->partitioner != NULL ? options->partitioner
-                                                                     : "ptscotch";
+#ifdef PETSC_HAVE_PTSCOTCH
+  const char *name = "ptscotch";
+#else
+  const char *name = "blocks";
+#endif
+  if (options != NULL && options->partitioner != NULL) name = options->partitioner;
   if (strlen(name) >= NAME_SIZE)
     return dvi__fail(DVI_BAD_OPTION, "petsc: there is no partitioner \"%s\"", name);
-  strcpy(division->partitioner, name);
+  memcpy(division->partitioner, name, strlen(name) + 1);
   division->facts.partitioner = division->partitioner;
   return DVI_OK;
 }
 
-static dvi_status join(MPI_Comm comm, dvi_division *division)
+static dvi_status join(const dvi_division_options *options, dvi_division *division)
 {
-  if (MPI_Comm_dup(comm, &division->comm) != MPI_SUCCESS)
+  static const MPI_Comm none = 0;
+  const int is_given = options != NULL && options->comm != MPI_COMM_NULL && options->comm != none;
+  if (MPI_Comm_dup(is_given ? options->comm : MPI_COMM_WORLD, &division->comm) != MPI_SUCCESS)
     return dvi__fail(DVI_SOLVER_FAILED, "petsc: MPI could not make a communicator");
   (void)MPI_Comm_set_errhandler(division->comm, MPI_ERRORS_RETURN);
   (void)MPI_Comm_rank(division->comm, &division->facts.rank);
@@ -220,23 +161,51 @@ static dvi_status join(MPI_Comm comm, dvi_division *division)
   return DVI_OK;
 }
 
+/* The processes have the same mesh, as far as the numbers of cells tell, with enough cells. */
+static dvi_status check_mesh(const dvi_mesh *mesh, const dvi__divider *divider)
+{
+  int64_t count[2 * DEGREES] = {0};
+  const int n = dvi_mesh_dimension(mesh);
+  for (int k = 0; k < DEGREES; k++) {
+    count[2 * k] = dvi_mesh_count(mesh, k);
+    count[2 * k + 1] = -count[2 * k];
+  }
+  if (MPI_Allreduce(MPI_IN_PLACE, count, 2 * DEGREES, MPI_INT64_T, MPI_MAX, divider->comm) !=
+      MPI_SUCCESS)
+    return dvi__fail(DVI_SOLVER_FAILED, "petsc: process %d of %d could not speak with the others",
+                     divider->rank, divider->ranks);
+  for (int k = 0; k < DEGREES; k++)
+    if (count[2 * k] != -count[2 * k + 1])
+      return dvi__fail(DVI_BAD_ARGUMENT,
+                       "petsc: the mesh is not the same on all processes: they "
+                       "have %lld to %lld cells of degree %d",
+                       (long long)-count[2 * k + 1], (long long)count[2 * k], k);
+  if (count[2 * n] >= divider->ranks) return DVI_OK;
+  return dvi__fail(DVI_BAD_ARGUMENT, "petsc: %d processes cannot share %lld cells: take fewer",
+                   divider->ranks, (long long)count[2 * n]);
+}
+
 static dvi_status make(const dvi_mesh *mesh, dvi_division *division, dvi_mesh **share)
 {
-  const int64_t cells = dvi_mesh_count(mesh, dvi_mesh_dimension(mesh));
-  int *owner = DVI_NEW(int, cells);
-  if (owner == NULL) return dvi__fail(DVI_NO_MEMORY, "petsc: no memory for owners");
+  const dvi__divider divider = {.comm = division->comm,
+                                .rank = division->facts.rank,
+                                .ranks = division->facts.ranks,
+                                .partitioner = division->partitioner};
   const dvi_ranks ranks = {.size = sizeof ranks,
-                           .rank = division->facts.rank,
-                           .count = division->facts.ranks,
+                           .rank = divider.rank,
+                           .count = divider.ranks,
                            .refresh = refresh,
                            .sum = sum,
                            .largest = largest,
                            .user = division};
-  dvi_status status = find_owners(mesh, division, owner);
-  if (status == DVI_OK) status = dvi_mesh_cut(mesh, owner, &ranks, share);
+  DVI_TRY(check_mesh(mesh, &divider));
+  int *owner = DVI_NEW(int, dvi_mesh_count(mesh, dvi_mesh_dimension(mesh)));
+  dvi_status status = dvi__agree_all(
+      &divider, owner != NULL ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "petsc: no memory for owners"));
+  if (status == DVI_OK) status = dvi__find_owners(mesh, &divider, owner);
+  if (status == DVI_OK) status = dvi__agree_all(&divider, dvi_mesh_cut(mesh, owner, &ranks, share));
   dvi__release(owner);
-  if (status == DVI_OK) status = check_petsc(plant_all(division, *share, mesh));
-  return status;
+  return status == DVI_OK ? plant_forests(division, &divider, *share, mesh) : status;
 }
 
 dvi_status dvi_mesh_divide(const dvi_mesh *mesh, const dvi_division_options *options,
@@ -244,22 +213,25 @@ dvi_status dvi_mesh_divide(const dvi_mesh *mesh, const dvi_division_options *opt
 {
   if (mesh == NULL || share == NULL || division == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "petsc: a mesh and places for results are needed");
+  *share = NULL;
+  *division = NULL;
   if (options != NULL && options->size != sizeof *options)
     return dvi__fail(DVI_BAD_ARGUMENT, "petsc: set options.size to sizeof(dvi_division_options)");
-  *share = NULL;
-  *division = DVI_NEW(dvi_division, 1);
-  if (*division == NULL) return dvi__fail(DVI_NO_MEMORY, "petsc: no memory");
-  (*division)->comm = MPI_COMM_NULL;
-  dvi_status status = choose(options, *division);
-  if (status == DVI_OK)
-    status = join(options != NULL && options->comm != MPI_COMM_NULL && options->comm != NULL
-                      ? options->comm
-                      : MPI_COMM_WORLD,
-                  *division);
-  if (status == DVI_OK) status = make(mesh, *division, share);
-  if (status == DVI_OK) return DVI_OK;
-  dvi_mesh_destroy(share);
-  dvi_division_destroy(division);
+  DVI_TRY(check_started());
+  dvi_division *made = DVI_NEW(dvi_division, 1);
+  if (made == NULL) return dvi__fail(DVI_NO_MEMORY, "petsc: no memory");
+  made->comm = MPI_COMM_NULL;
+  /* The sentence is the library's, and PETSc prints none. */
+  (void)PetscPushErrorHandler(PetscReturnErrorHandler, NULL);
+  dvi_status status = choose(options, made);
+  if (status == DVI_OK) status = join(options, made);
+  if (status == DVI_OK) status = make(mesh, made, share);
+  (void)PetscPopErrorHandler();
+  if (status != DVI_OK) {
+    dvi_mesh_destroy(share);
+    dvi_division_destroy(&made);
+  }
+  *division = made;
   return status;
 }
 
@@ -270,9 +242,11 @@ void dvi_division_facts_of(const dvi_division *division, dvi_division_facts *fac
 
 void dvi_division_destroy(dvi_division **division)
 {
+  PetscBool ended = PETSC_FALSE;
   if (division == NULL || *division == NULL) return;
-  for (int k = 0; k < DEGREES; k++) (void)PetscSFDestroy(&(*division)->forest[k]);
-  if ((*division)->comm != MPI_COMM_NULL) (void)MPI_Comm_free(&(*division)->comm);
+  (void)PetscFinalized(&ended);
+  for (int k = 0; k < DEGREES && !ended; k++) (void)PetscSFDestroy(&(*division)->forest[k]);
+  if ((*division)->comm != MPI_COMM_NULL && !ended) (void)MPI_Comm_free(&(*division)->comm);
   dvi__release(*division);
   *division = NULL;
 }

@@ -50,7 +50,7 @@ completes 'other.txt' 'a page' ./dvi view kepler --out oth
 completes 'scene.yaml' 'the scene of rows' ./dvi view rows.csv --scene sce
 completes 'methods' 'a list' ./dvi list met
 
-for line in '.SH SYNOPSIS' 'dvi plot FILE.csv --axes' '.SH EXAMPLES'; do
+for line in '.SH SYNOPSIS' 'dvi plot FILE.csv|FILE.h5 --axes' '.SH EXAMPLES'; do
   sed 's/\\-/-/g' man1/dvi-plot.1 | grep -q -e "^$line" || fail "dvi-plot.1: no line '$line'"
 done
 if command -v zsh >/dev/null; then zsh -n zsh/_dvi || fail 'zsh reads its completions'; fi

@@ -63,10 +63,21 @@ START_TEST(what_roundings_leave_of_zero_has_the_size_of_its_kind)
 }
 END_TEST
 
+START_TEST(momenta_of_a_system_at_rest_have_the_size_of_those_that_would_move_it)
+{
+  ck_assert_double_eq(trust_momentum(3.0, 2.0, 1e-6), 3.0);
+  ck_assert_double_eq_tol(trust_momentum(3e-15, 2.0, 1e-15), 6.0, 1e-12);
+  ck_assert_double_lt(trust_momentum(3e-15, 2.0, 0.0), 100.0);
+  ck_assert_double_eq(trust_momentum(0.0, 2.0, 0.0), 0.0);
+  ck_assert_double_eq(trust_momentum(3.0, 0.0, 0.0), 3.0);
+}
+END_TEST
+
 SUITE(trust)
 {
   tcase_add_test(tests, an_error_that_follows_its_power_is_found);
   tcase_add_test(tests, errors_that_do_not_fall_are_not_made_small);
   tcase_add_test(tests, digits_are_whole_and_within_their_range);
   tcase_add_test(tests, what_roundings_leave_of_zero_has_the_size_of_its_kind);
+  tcase_add_test(tests, momenta_of_a_system_at_rest_have_the_size_of_those_that_would_move_it);
 }

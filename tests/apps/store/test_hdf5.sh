@@ -126,7 +126,7 @@ no_trace 'failures'
 
 # Commands that read CSV read these files, and give the same.
 for kind in csv h5; do
-  expect 0 "a spectrum of $kind" spectrum rows.$kind --columns x,energy --csv lines.$kind
+  expect 0 "a spectrum of $kind" spectrum rows.$kind --columns x,energy --csv lines_$kind.csv
   expect 0 "a plot of $kind" plot rows.$kind --axes x:y,t:x --title rows --out rows_$kind.svg
   expect 0 "a page of $kind" view rows.$kind --title rows --out page_$kind.html
   expect 0 "a page of $kind with its scene" view rows.$kind --scene kepler --title rows \
@@ -136,7 +136,7 @@ for kind in csv h5; do
   expect 0 "a fit to $kind" fit one.yaml --to one.$kind --vary x --columns x,p_x --out fit_$kind.csv
   sed -i '/^"made":/d' page_$kind.html scene_$kind.html
 done
-same lines.csv lines.h5 'a spectrum'
+same lines_csv.csv lines_h5.csv 'a spectrum'
 same rows_csv.svg rows_h5.svg 'a plot'
 same page_csv.html page_h5.html 'a page'
 same scene_csv.html scene_h5.html 'a page with its scene'
@@ -188,10 +188,72 @@ for reader in 'view table.h5 --out x.html' 'spectrum table.h5' \
   says err "^dvi: ${reader%% *}: 'table.h5' is the table of a sweep, and the rows of a run are" \
     "$reader"
 done
+# CSV is written under no name of HDF5, and read from none, nor HDF5 from standard input.
+for writer in "path kepler $way --out" 'list problems --csv' 'mesh disk --csv' \
+  'control nowhere.yaml --out' 'gradient nowhere.yaml --out' 'fit nowhere.yaml --out' \
+  'order kepler --csv' 'resonance kepler --csv' 'solve nowhere.yaml --csv' \
+  'modes nowhere.yaml --csv' 'stability nowhere.yaml --csv' 'spectrum rows.csv --csv' \
+  'bench kepler --csv' 'bench kepler --at-csv' 'run one.yaml --csv' 'run one.yaml --events' \
+  'curvature nowhere.vtu --csv' 'regge nowhere.vtu --csv'; do
+  expect 2 "$writer" $writer none.h5
+  says err "^dvi: ${writer%% *}: ${writer##* } none.h5: CSV is written there" "$writer"
+done
+[ ! -e none.h5 ] || fail 'CSV under a name of HDF5'
+for reader in 'spectrum -' 'plot - --axes x:y --out x.svg' 'view - --out x.html'; do
+  "$dvi" $reader <rows.h5 >out 2>err && fail "$reader: HDF5"
+  says err '^dvi: standard input has a file of HDF5, which is read by its name' "$reader"
+done
+cp rows.h5 named.csv
+expect 1 'HDF5 under a name of CSV' spectrum named.csv
+says err "^dvi: 'named.csv' is a file of HDF5; give it a name that ends in .h5$" 'its name'
+
 for scene in ring block; do
   expect 0 "frames of a $scene" run $scene.yaml --pvd $scene.vtkhdf --out $scene.h5
   expect 0 "a list of a $scene" run $scene.yaml --pvd $scene.pvd --out $scene.csv
+  expect 0 "a page of its list" view $scene.pvd --rows $scene.csv --title $scene --out listed.html
+  expect 0 "a page of its frames" view $scene.vtkhdf --rows $scene.h5 --title $scene \
+    --out stored.html
+  sed -i '/^"made":/d' listed.html stored.html
+  same listed.html stored.html "a page of a $scene"
 done
+expect 2 'no such field' view block.vtkhdf --field v --out x.html
+says err "no field 'v' among" 'no such field'
+for size in 100 3000 20000; do
+  head -c $size block.vtkhdf >cut.vtkhdf
+  expect 1 'fields that were cut' view cut.vtkhdf --out x.html
+  says err "^dvi: cannot read 'cut.vtkhdf': it is cut short$" 'fields that were cut'
+done
+cp rows.h5 rows.vtkhdf
+expect 1 'rows under a name of fields' view rows.vtkhdf --out x.html
+says err "^dvi: cannot read 'rows.vtkhdf': it has no 'VTKHDF'$" 'rows under a name of fields'
+cp rows.csv text.vtkhdf
+expect 1 'no HDF5' view text.vtkhdf --out x.html
+says err "^dvi: cannot read 'text.vtkhdf': it is no file of HDF5$" 'no HDF5'
+expect 1 'no fields' view nowhere.vtkhdf --out x.html
+[ ! -e x.html ] || fail 'a page without fields'
+"$python" - <<END
+import h5py
+for name, array, at, number in ("cell", "Connectivity", 3, 10**6), \
+        ("point", "Points", 0, float("nan")), ("kind", "Types", 0, 7), \
+        ("count", "NumberOfCells", 0, 10**12), \
+        ("offset", "Steps/PointOffsets", 0, -5), ("offset2", "Steps/CellDataOffsets/u", 0, 10**12):
+    with open("block.vtkhdf", "rb") as old, open(name + ".vtkhdf", "wb") as new:
+        new.write(old.read())
+    with h5py.File(name + ".vtkhdf", "r+") as file:
+        root = file["VTKHDF"]
+        if array not in root:
+            array = "Steps/PointDataOffsets/" + next(iter(root["PointData"]))
+        root[array][at] = number
+END
+for damaged in cell point kind count offset offset2; do
+  expect 1 "a damaged $damaged" view $damaged.vtkhdf --out x.html
+  says err "^dvi: cannot read '$damaged.vtkhdf': " "a damaged $damaged"
+done
+expect 1 'lines of fields' spectrum ring.vtkhdf
+says err "^dvi: 'ring.vtkhdf' has fields at the times of a run, and no rows" 'lines of fields'
+expect 2 'a picture of all times' plot ring.vtkhdf --out x.svg
+says err '^dvi: plot: ring.vtkhdf has fields at the times of a run, which dvi view shows' \
+  'a picture of all times'
 march='run ring.yaml --method leapfrog'
 expect 0 'a march' $march --t-end 0.55 --out march.h5 --pvd march.vtkhdf --checkpoint march.state
 cp march.h5 early_march.h5

@@ -39,6 +39,21 @@ holds rods.html '"title":"two masses, one held by a spring & one by a \u003crod>
 holds rods.html '&lt;rod>' 'the title of the page'
 expect 0 'a chain' view chain --method verlet --h 0.1 --t-end 5 --set n=3 --out chain.html
 holds chain.html '"links":[[0,1],[1,2]]' 'a chain'
+cat >net.yaml <<'END'
+coordinates: {"x[2,2]": scalar, "y[2,2]": scalar}
+kinetic: sum(i, sum(j, x[i,j]'^2 + y[i,j]'^2))/2
+potentials:
+  rows: sum(j, (hypot(x[2,j] - x[1,j], y[2,j] - y[1,j]) - 1)^2)
+  columns: sum(i, (hypot(x[i,2] - x[i,1], y[i,2] - y[i,1]) - 1)^2)
+initial: {"x[i,j]": "i", "y[i,j]": "2*j"}
+method: verlet
+step: 0.1
+until: 1
+END
+expect 0 'a net in the plane' view net.yaml --out net.html
+holds net.html '"points":["1_1","1_2","2_1","2_2"]' 'a net in the plane'
+holds net.html '"links":[[0,1],[0,2],[1,3],[2,3]]' 'its springs'
+holds net.html '"isPlane":true' 'a net in the plane'
 expect 0 'a number' view "$scenes/pendulum.yaml" --out pendulum.html --t-end 1
 holds pendulum.html '"points":["state"]' 'a number and its momentum'
 

@@ -1,6 +1,6 @@
 #include "support/field/generated.h"
 
-#include <check.h>
+#include "support/suite.h"
 
 dvi_mesh *generated(const char *name, dvi_generator_options options)
 {

@@ -18,7 +18,9 @@ typedef struct board {
   int64_t integer[RANKS][NUMBERS];
   double number[RANKS][NUMBERS];
   void (*work)(const dvi_mesh *share, int rank, void *user);
+  void (*work_on_boxes)(const dvi_yee_ranks *ranks, void *user);
   void *user;
+  const double *sent[RANKS]; /* planes */
 } board;
 
 typedef struct rank {
@@ -71,6 +73,21 @@ static int largest(int count, double *number, void *user)
   return 0;
 }
 
+/* Let all threads of a board run, each as a process. */
+static void run_threads(board *shared, void *(*run)(void *user), rank *ranks)
+{
+  pthread_t thread[RANKS];
+  ck_assert(pthread_barrier_init(&shared->barrier, NULL, (unsigned)shared->count) == 0);
+  for (int r = 0; r < shared->count; r++) {
+    ranks[r] = (rank){.board = shared, .rank = r};
+    ck_assert(pthread_create(thread + r, NULL, run, ranks + r) == 0);
+  }
+  for (int r = 0; r < shared->count; r++) ck_assert(pthread_join(thread[r], NULL) == 0);
+  (void)pthread_barrier_destroy(&shared->barrier);
+}
+
+/* ---- meshes ---- */
+
 static void *run(void *user)
 {
   rank *r = user;
@@ -92,17 +109,50 @@ void run_ranks(const dvi_mesh *whole, int count, const int *owner,
 {
   static board shared;
   rank ranks[RANKS];
-  pthread_t thread[RANKS];
   shared = (board){.whole = whole, .owner = owner, .count = count, .work = work, .user = user};
-  ck_assert(pthread_barrier_init(&shared.barrier, NULL, (unsigned)count) == 0);
   for (int k = 0; k <= dvi_mesh_dimension(whole); k++)
     shared.values[k] = calloc((size_t)dvi_mesh_count(whole, k), sizeof(double));
-  for (int r = 0; r < count; r++) {
-    ranks[r] = (rank){.board = &shared, .rank = r};
-    ck_assert(pthread_create(thread + r, NULL, run, ranks + r) == 0);
-  }
-  for (int r = 0; r < count; r++) ck_assert(pthread_join(thread[r], NULL) == 0);
+  run_threads(&shared, run, ranks);
   for (int r = 0; r < count; r++) ck_assert_int_eq(ranks[r].status, DVI_OK);
   for (int k = 0; k <= dvi_mesh_dimension(whole); k++) free(shared.values[k]);
-  (void)pthread_barrier_destroy(&shared.barrier);
+}
+
+/* ---- boxes ---- */
+
+static int pass(int way, int around, int64_t count, const double *sent, double *received,
+                void *user)
+{
+  const rank *r = user;
+  const int processes = r->board->count, from = r->rank - way;
+  const int is_inside = from >= 0 && from < processes;
+  meet(r);
+  r->board->sent[r->rank] = sent;
+  meet(r);
+  if (is_inside || around)
+    memcpy(received, r->board->sent[(from + processes) % processes],
+           (size_t)count * sizeof *received);
+  meet(r);
+  return 0;
+}
+
+static void *run_boxes(void *user)
+{
+  rank *r = user;
+  const dvi_yee_ranks ranks = {.size = sizeof ranks,
+                               .rank = r->rank,
+                               .count = r->board->count,
+                               .pass = pass,
+                               .sum = sum,
+                               .largest = largest,
+                               .user = r};
+  r->board->work_on_boxes(&ranks, r->board->user);
+  return NULL;
+}
+
+void run_box_ranks(int count, void (*work)(const dvi_yee_ranks *ranks, void *user), void *user)
+{
+  static board shared;
+  rank ranks[RANKS];
+  shared = (board){.count = count, .work_on_boxes = work, .user = user};
+  run_threads(&shared, run_boxes, ranks);
 }

@@ -2,10 +2,14 @@
 #ifndef TESTS_SUPPORT_FIELD_RANKS_H
 #define TESTS_SUPPORT_FIELD_RANKS_H
 #include <dvi/mesh.h>
+#include <dvi/yee.h>
 
 /* Cut the mesh into shares, and let each thread work with its own. The threads speak with each
  * other as processes do. `owner` is [n-cells]. */
 void run_ranks(const dvi_mesh *whole, int count, const int *owner,
                void (*work)(const dvi_mesh *share, int rank, void *user), void *user);
+
+/* Let each thread work as one of `count` processes that divide a grid of boxes. */
+void run_box_ranks(int count, void (*work)(const dvi_yee_ranks *ranks, void *user), void *user);
 
 #endif

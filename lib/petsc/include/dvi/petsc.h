@@ -20,7 +20,7 @@ typedef struct dvi_division_options {
   /** The processes. Default (where it is MPI_COMM_NULL or 0): all of them */
   MPI_Comm comm;
   /** "ptscotch" and others of PETSc's, for few neighbours; "blocks" for cells in the order of their
-   *  numbers. Default: ptscotch if PETSc has it */
+   *  numbers. Default: ptscotch if PETSc has it, otherwise blocks */
   const char *partitioner;
 } dvi_division_options;
 
@@ -44,8 +44,14 @@ extern "C" {
  *  @param options  NULL for the defaults
  *  @param[out] share  for dvi_mesh_destroy
  *  @param[out] division  for dvi_division_destroy after the share
+ *  If one process fails, all of them do, with its status.
+ *
  *  @retval DVI_BAD_OPTION    PETSc has no such partitioner
- *  @retval DVI_BAD_ARGUMENT  there are more processes than cells
+ *  @retval DVI_BAD_ARGUMENT  PETSc has not been started, there are more processes than cells, the
+ *                            partitioner leaves a process without cells, or the mesh is not the
+ *                            same on all processes
+ *  @retval DVI_BAD_SIZE      PetscInt cannot number the neighbours of the cells of a process
+ *  @retval DVI_NO_MEMORY     there is no memory
  *  @retval DVI_SOLVER_FAILED PETSc or MPI failed */
 dvi_status dvi_mesh_divide(const dvi_mesh *mesh, const dvi_division_options *options,
                            dvi_mesh **share, dvi_division **division);
@@ -53,7 +59,7 @@ dvi_status dvi_mesh_divide(const dvi_mesh *mesh, const dvi_division_options *opt
 /** Give facts about the share of this process. */
 void dvi_division_facts_of(const dvi_division *division, dvi_division_facts *facts);
 
-/** Release the division, and set the pointer to NULL. NULL is allowed. */
+/** Release the division before PetscFinalize, and set the pointer to NULL. NULL is allowed. */
 void dvi_division_destroy(dvi_division **division);
 
 #ifdef __cplusplus

@@ -86,8 +86,8 @@ dvi_status dvi__yee_make_walls(const dvi_yee_terms *terms, dvi__yee *y)
   }
   if (y->wall == NULL) return dvi__fail(DVI_NO_MEMORY, "yee: no memory for absorbing ends");
   for (int c = 0; c < 3; c++)
-    for (int k = 0; k < y->axis[2].nodes && y->slot[c] >= 0; k++)
-      for (int j = 0; j < y->axis[1].nodes; j++) DVI_TRY(set_row(terms, y, c, j, k));
+    for (int k = y->own[2][0]; k < y->own[2][1] && y->slot[c] >= 0; k++)
+      for (int j = y->own[1][0]; j < y->own[1][1]; j++) DVI_TRY(set_row(terms, y, c, j, k));
   return DVI_OK;
 }
 

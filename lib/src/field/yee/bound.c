@@ -9,7 +9,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "field/yee/yee.h"
+#include "field/yee/ranks.h"
 
 /* ---- one axis ---- */
 
@@ -97,34 +97,54 @@ static double local_largest(const dvi__yee *y, int c, const int *place)
   return sum * dvi__yee_over_mu(y, c, place) * over_eps;
 }
 
-void dvi__yee_tightest(const dvi__yee *y, double *x)
+/* The first one of several places, by their numbers in the whole grid. */
+typedef struct tight {
+  double most, number, x[3];
+} tight;
+
+static tight tightest_here(const dvi__yee *y)
 {
-  double most = -1;
-  for (int c = 0; c < 3; c++) {
+  tight found = {-1, 0, {0, 0, 0}};
+  for (int c = DVI__YEE_B; c < DVI__YEE_B + 3; c++) {
     int place[3] = {0, 0, 0};
-    if (y->slot[DVI__YEE_B + c] < 0) continue;
-    for (place[2] = 0; place[2] < dvi__yee_places(y, DVI__YEE_B + c, 2); place[2]++)
-      for (place[1] = 0; place[1] < dvi__yee_places(y, DVI__YEE_B + c, 1); place[1]++)
-        for (place[0] = 0; place[0] < dvi__yee_places(y, DVI__YEE_B + c, 0); place[0]++) {
-          const double here = local_largest(y, c, place);
-          if (!(here > most)) continue;
-          most = here;
+    if (y->slot[c] < 0) continue;
+    for (place[2] = dvi__yee_begin(y, 2); place[2] < dvi__yee_end(y, c, 2); place[2]++)
+      for (place[1] = dvi__yee_begin(y, 1); place[1] < dvi__yee_end(y, c, 1); place[1]++)
+        for (place[0] = 0; place[0] < dvi__yee_places(y, c, 0); place[0]++) {
+          const double here = local_largest(y, c - DVI__YEE_B, place);
+          if (!(here > found.most)) continue;
+          found.most = here;
+          found.number = (double)dvi__yee_whole_number(y, c, place);
           for (int l = 0; l < 3; l++) {
             const dvi__yee_axis *a = &y->axis[l];
-            x[l] = a->node[place[l]];
-            if (dvi__yee_reaches(DVI__YEE_B + c, l)) x[l] += 0.5 * a->length[place[l]];
+            found.x[l] = a->node[place[l]];
+            if (dvi__yee_reaches(c, l)) found.x[l] += 0.5 * a->length[place[l]];
           }
         }
   }
+  return found;
+}
+
+void dvi__yee_tightest(const dvi__yee *y, double *x)
+{
+  const tight here = tightest_here(y);
+  double most = here.most, last;
+  dvi__yee_largest_of_all(y, 1, &most);
+  const double own = last = here.most == most ? -here.number : -(double)INFINITY;
+  dvi__yee_largest_of_all(y, 1, &last);
+  for (int l = 0; l < 3; l++) x[l] = own == last ? here.x[l] : -(double)INFINITY;
+  dvi__yee_largest_of_all(y, 3, x);
 }
 
 /* ---- bound ---- */
 
-static double fastest(size_t count, const double *array)
+static double fastest(const dvi__yee *y, size_t count, const double *array)
 {
   double most = 0;
-  for (size_t i = 0; i < count && array != NULL; i++) most = fmax(most, array[i]);
-  return array != NULL ? most : 1;
+  if (array == NULL) return 1;
+  for (size_t i = 0; i < count; i++) most = fmax(most, array[i]);
+  dvi__yee_largest_of_all(y, 1, &most);
+  return most;
 }
 
 static dvi_status find_largest(dvi__yee *y, double *lambda)
@@ -132,8 +152,8 @@ static dvi_status find_largest(dvi__yee *y, double *lambda)
   const size_t rows = y->rows[0] * y->rows[1] * y->width;
   *lambda = 0;
   for (int l = 0; l < 3; l++) *lambda += largest_of_axis(&y->axis[l]);
-  *lambda *= fastest(rows * (size_t)y->edges_slots, y->ce) *
-             fastest(rows * (size_t)(y->components - y->edges_slots), y->mi);
+  *lambda *= fastest(y, rows * (size_t)y->edges_slots, y->ce) *
+             fastest(y, rows * (size_t)(y->components - y->edges_slots), y->mi);
   if (y->ce != NULL || y->mi != NULL) {
     for (int l = 0; l < 3; l++) dvi__yee_set_step(&y->axis[l], 1);
     DVI_TRY(dvi__yee_lanczos(y, *lambda, lambda));

@@ -8,7 +8,7 @@
 #include "core/hash.h"
 #include "core/memory.h"
 #include "core/status.h"
-#include "field/yee/yee.h"
+#include "field/yee/ranks.h"
 
 enum { VERSION = 2 };
 
@@ -64,6 +64,7 @@ static uint64_t hash_grid(const dvi__yee *y)
       hash = hash_numbers(hash_integer(hash, (int64_t)a->end[e].kind), 4, numbers);
     }
   }
+  if (y->divided >= 0) hash = dvi__hash(hash, sizeof y->own, y->own);
   hash = hash_numbers(hash, places * (size_t)y->edges_slots, y->ce);
   hash = hash_numbers(hash, places * (size_t)y->edges_slots, y->ca);
   hash = hash_numbers(hash, places * (size_t)(y->components - y->edges_slots), y->mi);
@@ -107,11 +108,6 @@ static part part_of(const dvi__yee *y, int number)
   return wave;
 }
 
-static size_t count_charges(const dvi__yee *y)
-{
-  return (size_t)y->axis[0].nodes * (size_t)y->axis[1].nodes * (size_t)y->axis[2].nodes;
-}
-
 /* ---- save ---- */
 
 dvi_status dvi__yee_save(const void *self, dvi__sections_writer *writer)
@@ -134,7 +130,7 @@ dvi_status dvi__yee_save(const void *self, dvi__sections_writer *writer)
   }
   if (y->charge == NULL) return DVI_OK;
   dvi__section_open(writer, "yee-charges", VERSION);
-  dvi__section_put(writer, y->charge, count_charges(y) * sizeof(double));
+  dvi__section_put(writer, y->charge, dvi__yee_count_nodes(y) * sizeof(double));
   return DVI_OK;
 }
 
@@ -177,7 +173,7 @@ static dvi_status go_through_parts(const dvi__yee *y, const dvi__sections *secti
 static dvi_status find_charges(dvi__yee *y, const dvi__sections *sections, const identity *id,
                                dvi__section *charges)
 {
-  const size_t count = count_charges(y);
+  const size_t count = dvi__yee_count_nodes(y);
   if (!id->has_charge) return DVI_OK;
   DVI_TRY(dvi__section_find(sections, "yee-charges", VERSION, count * sizeof(double), charges));
   if (y->charge == NULL) y->charge = DVI_NEW(double, count);
@@ -210,10 +206,11 @@ dvi_status dvi__yee_load(void *self, const dvi__sections *sections)
   if (charges.content != NULL)
     memcpy(y->charge, charges.content, charges.size);
   else if (y->charge != NULL)
-    memset(y->charge, 0, count_charges(y) * sizeof(double));
+    memset(y->charge, 0, dvi__yee_count_nodes(y) * sizeof(double));
   y->t0 = id.t0;
   y->t = id.t;
   y->step = id.step;
   y->moment->is_now = 0;
+  dvi__yee_begin_ranks(y);
   return DVI_OK;
 }

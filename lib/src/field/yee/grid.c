@@ -2,7 +2,7 @@
 #include <math.h>
 
 #include "core/status.h"
-#include "field/yee/yee.h"
+#include "field/yee/ranks.h"
 
 enum { VECTOR = 8, POINTS = 5 };
 
@@ -40,7 +40,15 @@ static void set_slots(dvi__yee *y)
   }
 }
 
+/* Count the cells of a component that this process has, or all. */
 static int64_t count_cells(const dvi__yee *y, int component)
+{
+  int64_t count = 1;
+  for (int l = 0; l < 3; l++) count *= dvi__yee_end(y, component, l) - dvi__yee_begin(y, l);
+  return y->slot[component] >= 0 ? count : 0;
+}
+
+static int64_t count_all(const dvi__yee *y, int component)
 {
   int64_t count = 1;
   for (int l = 0; l < 3; l++) count *= dvi__yee_places(y, component, l);
@@ -58,8 +66,14 @@ static void count_unknowns(dvi__yee *y)
                              ? y->axis[l].free[1] - y->axis[l].free[0]
                              : 0);
     y->unknowns += count;
-    y->faces += count_cells(y, DVI__YEE_B + c);
+    y->faces += count_all(y, DVI__YEE_B + c);
   }
+}
+
+/* Give the box behind the last own one of an axis. */
+static int last_box(const dvi__yee *y, int l)
+{
+  return y->own[l][1] < y->axis[l].cells ? y->own[l][1] : y->axis[l].cells;
 }
 
 /* Half of the address space is enough for all. */
@@ -70,7 +84,7 @@ static dvi_status set_sizes(dvi__yee *y)
   y->count = (places + VECTOR - 1) / VECTOR * VECTOR;
   y->width = y->count + DVI__YEE_LEFT;
   for (int l = 1; l < 3; l++)
-    y->rows[l - 1] = y->axis[l].is_trivial ? 1 : (size_t)y->axis[l].cells + 2;
+    y->rows[l - 1] = y->axis[l].is_trivial ? 1 : (size_t)(last_box(y, l) - y->own[l][0]) + 2;
   size = (double)y->width * (double)y->rows[0] * (double)y->rows[1] * y->components;
   if (size > 1e15)
     return dvi__fail(DVI_BAD_SIZE, "yee: a grid of %d x %d x %d boxes is too large",
@@ -94,6 +108,7 @@ dvi_status dvi__yee_make_grid(const dvi_yee_terms *terms, dvi__yee *y)
     if (y->axis[l].end[0].kind == DVI_YEE_BLOCH) y->copies = 2;
   }
   set_slots(y);
+  DVI_TRY(dvi__yee_divide(terms, y));
   count_unknowns(y);
   return set_sizes(y);
 }
@@ -124,6 +139,28 @@ int64_t dvi__yee_form_size(const dvi__yee *y, dvi_march_form form)
   return count;
 }
 
+int64_t dvi__yee_whole_size(const dvi__yee *y, dvi_march_form form)
+{
+  int64_t count = 0;
+  for (int c = 0; c < 3; c++) count += count_all(y, first_of(form) + c);
+  return count;
+}
+
+size_t dvi__yee_count_nodes(const dvi__yee *y)
+{
+  size_t count = 1;
+  for (int l = 0; l < 3; l++) count *= (size_t)(y->own[l][1] - y->own[l][0]);
+  return count;
+}
+
+int64_t dvi__yee_whole_number(const dvi__yee *y, int component, const int *place)
+{
+  int64_t number = 0;
+  for (int l = 2; l >= 0; l--) number = number * dvi__yee_places(y, component, l) + place[l];
+  for (int c = component - component % 3; c < component; c++) number += count_all(y, c);
+  return number;
+}
+
 int64_t dvi_yee_size(const dvi_yee_terms *terms, dvi_march_form form)
 {
   dvi__yee y;
@@ -137,9 +174,10 @@ static int64_t number_of(const dvi__yee *y, dvi_march_form form, int c, const in
   int64_t number = 0;
   if (form == DVI_FORM_A || c < 0 || c > 2 || y->slot[first_of(form) + c] < 0) return -1;
   for (int l = 2; l >= 0; l--) {
-    const int places = dvi__yee_places(y, first_of(form) + c, l), i = l < y->axes ? index[l] : 0;
-    if (i < 0 || i >= places) return -1;
-    number = number * places + i;
+    const int begin = dvi__yee_begin(y, l), end = dvi__yee_end(y, first_of(form) + c, l),
+              i = l < y->axes ? index[l] : 0;
+    if (i < begin || i >= end) return -1;
+    number = number * (end - begin) + i - begin;
   }
   for (int before = 0; before < c; before++) number += count_cells(y, first_of(form) + before);
   return number;
@@ -164,9 +202,9 @@ void dvi__yee_place_of(const dvi__yee *y, dvi_march_form form, int64_t number, i
     number -= count_cells(y, first_of(form) + c++);
   *component = first_of(form) + c;
   for (int l = 0; l < 3; l++) {
-    const int places = dvi__yee_places(y, *component, l);
-    place[l] = (int)(number % places);
-    number /= places;
+    const int begin = dvi__yee_begin(y, l), count = dvi__yee_end(y, *component, l) - begin;
+    place[l] = begin + (int)(number % count);
+    number /= count;
   }
 }
 

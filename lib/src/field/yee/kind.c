@@ -9,7 +9,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "field/yee/yee.h"
+#include "field/yee/ranks.h"
 
 /* ---- creation ---- */
 
@@ -23,6 +23,7 @@ static void destroy(void *self)
   dvi__yee_clear_acts(&y->on_edges);
   dvi__yee_clear_acts(&y->on_faces);
   dvi__yee_clear_waves(y);
+  dvi__yee_clear_planes(y);
   dvi__release(y->source);
   dvi__release(y->probe);
   dvi__release(y->flux);
@@ -68,16 +69,20 @@ static dvi_status choose_step(const dvi_yee_terms *terms, dvi__yee *y)
   return DVI_OK;
 }
 
-static dvi_status make(const dvi_yee_terms *terms, dvi__yee *y)
+/* Make what the bound of the step needs. */
+static dvi_status make_planes_and_media(const dvi_yee_terms *terms, dvi__yee *y)
 {
-  DVI_TRY(dvi__yee_make_grid(terms, y));
+  DVI_TRY(dvi__yee_make_planes(terms, y));
   if (y->unknowns == 0)
     return dvi__fail(
         DVI_BAD_ARGUMENT,
         "yee: no edge has an unknown, because conductors surround every box; take more "
         "boxes");
-  DVI_TRY(dvi__yee_make_media(terms, y));
-  DVI_TRY(choose_step(terms, y));
+  return dvi__yee_make_media(terms, y);
+}
+
+static dvi_status make_march(const dvi_yee_terms *terms, dvi__yee *y)
+{
   DVI_TRY(dvi__yee_make_losses(terms, y));
   DVI_TRY(dvi__yee_make_walls(terms, y));
   for (int copy = 0; copy < y->copies; copy++) {
@@ -89,6 +94,15 @@ static dvi_status make(const dvi_yee_terms *terms, dvi__yee *y)
   DVI_TRY(dvi__yee_make_sweeps(y, terms));
   DVI_TRY(dvi__yee_make_sources(terms, y));
   return dvi__yee_make_observables(terms, y);
+}
+
+/* Processes agree before they speak about the bound, and at the end. */
+static dvi_status make(const dvi_yee_terms *terms, dvi__yee *y)
+{
+  DVI_TRY(dvi__yee_make_grid(terms, y));
+  DVI_TRY(dvi__yee_agree(y, make_planes_and_media(terms, y)));
+  DVI_TRY(choose_step(terms, y));
+  return dvi__yee_agree(y, make_march(terms, y));
 }
 
 /* ---- motion ---- */
@@ -103,6 +117,7 @@ static dvi_status advance(void *self, double t)
 {
   dvi__yee *y = self;
   const double steps = (t - y->t0) / y->dt;
+  DVI_TRY(dvi__yee_check_ranks(y));
   if (!(steps < 9e15))
     return dvi__fail(DVI_BAD_ARGUMENT, "yee: %g steps until t = %g cannot be counted", steps, t);
   y->moment->is_now = 0;
@@ -114,9 +129,9 @@ static dvi_status advance(void *self, double t)
     if (ready > 0) dvi__yee_sweep(y, ready);
     dvi__yee_take_impulses(y, ready);
     y->step += ready;
-    if (status == DVI_OK) continue;
+    if (status == DVI_OK && dvi__yee_check_ranks(y) == DVI_OK) continue;
     y->t = fmax(y->t, y->t0 + (double)y->step * y->dt);
-    return status;
+    return status != DVI_OK ? status : dvi__yee_check_ranks(y);
   }
   y->t = t;
   return DVI_OK;

@@ -8,9 +8,16 @@
 
 enum { DIFFERENCES = 4 };
 
+/* Tell if some of the layers are across planes of another process only. */
+static int is_elsewhere(const dvi__yee *y, int axis, const dvi__yee_layers *l)
+{
+  return l->first >= y->own[axis][1] || l->first + l->count <= y->own[axis][0];
+}
+
 static size_t count_psi(const dvi__yee *y, int axis, int end)
 {
   const dvi__yee_layers *l = &y->axis[axis].layers[end];
+  if (is_elsewhere(y, axis, l)) return 0;
   const size_t rows = axis == 0   ? y->rows[0] * y->rows[1] * (size_t)l->width
                       : axis == 1 ? y->rows[1] * (size_t)l->count * y->width
                                   : y->rows[0] * (size_t)l->count * y->width;

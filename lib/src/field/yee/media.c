@@ -49,10 +49,19 @@ static int is_given(const dvi_yee_medium *medium)
   return medium->cell != NULL || medium->at != NULL;
 }
 
+/* Give the number of a box in the whole grid, and among those whose values are kept, which are
+ * beside the own nodes. */
 static size_t number_of(const dvi__yee *y, const int *cell)
 {
   const size_t n = (size_t)y->axis[0].cells, m = (size_t)y->axis[1].cells;
   return ((size_t)cell[2] * m + (size_t)cell[1]) * n + (size_t)cell[0];
+}
+
+static size_t number_kept(const dvi__yee *y, const int *cell)
+{
+  size_t number = 0;
+  for (int l = 2; l > 0; l--) number = number * y->rows[l - 1] + dvi__yee_row_along(y, l, cell[l]);
+  return number * (size_t)y->axis[0].cells + (size_t)cell[0];
 }
 
 /* What is summed over the pieces of boxes around an edge or face. */
@@ -64,7 +73,7 @@ typedef struct stars {
   quantity what;
   const dvi_yee_medium *medium; /* of the quantity */
   dvi__average function, sigma; /* its function or for losses that of eps, and that of sigma */
-  double *value;                /* [boxes] of the function, NAN where it changes. NULL: unknown */
+  double *value; /* [boxes kept] of the function, NAN where it changes. NULL: unknown */
 } stars;
 
 static stars stars_of(const dvi_yee_terms *terms, const dvi__yee *y, quantity what)
@@ -88,7 +97,7 @@ static dvi_status add_piece(const stars *s, int c, dvi__average_box *box, const 
   const dvi__yee *y = s->y;
   double along = 1, across = 1;
   if (s->medium->at != NULL) {
-    const double *value = s->value != NULL ? s->value + number_of(y, cell) : NULL;
+    const double *value = s->value != NULL ? s->value + number_kept(y, cell) : NULL;
     box->value = value != NULL && !isnan(*value) ? value : NULL;
     if (s->what == LOSS) return dvi__average_loss(&s->function, &s->sigma, box, c, sum);
     return s->what == PERMEABILITY ? dvi__average_face(&s->function, box, c, sum)
@@ -165,43 +174,59 @@ static double *new_array(const dvi__yee *y, quantity what)
   return DVI_NEW(double, count);
 }
 
+/* Find the first plane of an axis that has pieces at the own places, or places of 1/mu, and move it
+ * around if the axis repeats itself. */
+static int before_own(const dvi__yee *y, int axis)
+{
+  const int begin = dvi__yee_begin(y, axis), is_divided = axis == y->divided;
+  return begin - (is_divided && (begin > 0 || y->axis[axis].wraps));
+}
+
+static int around(const dvi__yee *y, int axis, int i)
+{
+  return i < 0 ? i + y->axis[axis].cells : i;
+}
+
 /* Find the boxes in which a function has one value. Where each box is one piece, that is left to
  * the piece. */
 static dvi_status find_values(stars *s)
 {
   const dvi__yee *y = s->y;
-  const size_t count = (size_t)y->axis[0].cells * (size_t)y->axis[1].cells *
-                       (size_t)y->axis[2].cells;
+  const size_t count = (size_t)y->axis[0].cells * y->rows[0] * y->rows[1];
   if (s->medium->at == NULL || (s->what == PERMEABILITY && y->components - y->edges_slots == 1))
     return DVI_OK;
   s->value = DVI_NEW(double, count);
   if (s->value == NULL) return dvi__fail(DVI_NO_MEMORY, "yee: no memory for materials");
-  int cell[3] = {0};
-  for (cell[2] = 0; cell[2] < y->axis[2].cells; cell[2]++)
-    for (cell[1] = 0; cell[1] < y->axis[1].cells; cell[1]++)
-      for (cell[0] = 0; cell[0] < y->axis[0].cells; cell[0]++) {
+  for (int k = before_own(y, 2); k < dvi__yee_end(y, DVI__YEE_E + 2, 2); k++)
+    for (int j = before_own(y, 1); j < dvi__yee_end(y, DVI__YEE_E + 1, 1); j++)
+      for (int i = 0; i < y->axis[0].cells; i++) {
+        const int cell[] = {i, around(y, 1, j), around(y, 2, k)};
         dvi__average_box box = {.space = y->axes};
         for (int l = 0; l < y->axes; l++) {
           box.lower[l] = y->axis[l].node[cell[l]];
           box.upper[l] = y->axis[l].node[cell[l] + 1];
         }
         DVI_TRY(dvi__average_value(&s->function, s->what == LOSS ? &s->sigma : NULL, &box,
-                                   s->value + number_of(y, cell)));
+                                   s->value + number_kept(y, cell)));
       }
   return DVI_OK;
 }
 
-/* Fill an array with the sums over pieces beside those of vacuum, or for eps with the inverse. */
+/* Fill an array with the sums over pieces beside those of vacuum, or for eps with the inverse. A
+ * step needs 1/mu before the own planes, too, but for the component along the divided axis. */
 static dvi_status fill_places(const stars *s, double *array)
 {
   const dvi__yee *y = s->y;
   const int first = s->what == PERMEABILITY ? DVI__YEE_B : DVI__YEE_E;
   for (int component = first; component < first + 3; component++) {
-    int place[3];
+    const int has_before = first == DVI__YEE_B && component % 3 != y->divided,
+              low = has_before ? before_own(y, 1) : dvi__yee_begin(y, 1),
+              bottom = has_before ? before_own(y, 2) : dvi__yee_begin(y, 2);
     if (y->slot[component] < 0) continue;
-    for (place[2] = 0; place[2] < dvi__yee_places(y, component, 2); place[2]++)
-      for (place[1] = 0; place[1] < dvi__yee_places(y, component, 1); place[1]++)
-        for (place[0] = 0; place[0] < dvi__yee_places(y, component, 0); place[0]++) {
+    for (int k = bottom; k < dvi__yee_end(y, component, 2); k++)
+      for (int j = low; j < dvi__yee_end(y, component, 1); j++)
+        for (int i = 0; i < dvi__yee_places(y, component, 0); i++) {
+          const int place[] = {i, around(y, 1, j), around(y, 2, k)};
           double sum;
           DVI_TRY(sum_pieces(s, component, place, &sum));
           const double vacuum = vacuum_star(y, component, place);
@@ -230,10 +255,11 @@ static void wrap_faces(const dvi__yee *y, double *array)
     for (size_t start = row * block; start < (row + 1) * block; start += y->width)
       array[start + DVI__YEE_LEFT - 1] = array[start + DVI__YEE_LEFT + n - 1];
   const size_t plane = y->rows[0] * block;
-  for (size_t start = 0; start < y->rows[1] * plane && y->axis[1].wraps; start += plane)
+  const int copies_rows = y->axis[1].wraps && y->divided != 1;
+  for (size_t start = 0; start < y->rows[1] * plane && copies_rows; start += plane)
     for (size_t i = 0; i < block; i++)
       array[start + i] = array[start + (size_t)y->axis[1].cells * block + i];
-  for (size_t i = 0; i < plane && y->axis[2].wraps; i++)
+  for (size_t i = 0; i < plane && y->axis[2].wraps && y->divided != 2; i++)
     array[i] = array[(size_t)y->axis[2].cells * plane + i];
 }
 

@@ -4,7 +4,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "field/yee/yee.h"
+#include "field/yee/ranks.h"
 
 typedef dvi__yee_value value;
 
@@ -13,11 +13,11 @@ enum { ENERGY, CHARGE, GAUSS, DIVERGENCE, FIXED };
 /* ---- energy ---- */
 
 /* Sum star E^2/2, or star B^n B^{n+1}/2 without sources, over the places of a row. */
-static double energy_of_row(const dvi__yee *y, int component, int j, int k)
+static void add_energy_of_row(const dvi__yee *y, int component, int j, int k, dvi__yee_sum *sum)
 {
   const int c = component % 3, a = (c + 1) % 3, b = (c + 2) % 3, is_face = component >= DVI__YEE_B,
             places = dvi__yee_places(y, component, 0), first[3] = {0, j, k};
-  double sum = 0, *star = y->scratch;
+  double *star = y->scratch;
   dvi__yee_stars(y, component, first, places, star);
   for (int copy = 0; copy < y->copies; copy++) {
     const double *f = y->state[copy] + dvi__yee_at(y, component, j, k);
@@ -26,22 +26,21 @@ static double energy_of_row(const dvi__yee *y, int component, int j, int k)
     const ptrdiff_t up = p != f ? y->next[a] : 0, right = q != f ? y->next[b] : 0;
     for (int i = 0; i < places; i++) {
       const double curl = is_face ? (p[i + up] - p[i]) - (q[i + right] - q[i]) : 0;
-      sum += 0.5 * star[i] * f[i] * (f[i] - y->dt * curl);
+      dvi__yee_add(sum, 0.5 * star[i] * f[i] * (f[i] - y->dt * curl));
     }
   }
-  return sum;
 }
 
 static double energy_of(const dvi__yee *y)
 {
-  double sum = 0;
+  dvi__yee_sum sum = {.count = 0};
   for (int component = 0; component < 6; component++) {
     if (y->slot[component] < 0) continue;
-    for (int k = 0; k < dvi__yee_places(y, component, 2); k++)
-      for (int j = 0; j < dvi__yee_places(y, component, 1); j++)
-        sum += energy_of_row(y, component, j, k);
+    for (int k = dvi__yee_begin(y, 2); k < dvi__yee_end(y, component, 2); k++)
+      for (int j = dvi__yee_begin(y, 1); j < dvi__yee_end(y, component, 1); j++)
+        add_energy_of_row(y, component, j, k, &sum);
   }
-  return sum;
+  return dvi__yee_sum_up(y, &sum);
 }
 
 /* ---- charge ---- */
@@ -66,8 +65,8 @@ static int counts(const dvi__yee *y, const int *place, int is_box)
   return !dvi__yee_is_on_wave(y, place, is_box);
 }
 
-/* Give D of an edge, and with `all` what has been conducted and what currents brought there. The
- * sizes of the terms are added to *size. */
+/* Give D of an edge, and with `all` what has been conducted and what currents brought there. *size
+ * is the sum of the sizes of the terms. */
 static double displacement(const dvi__yee *y, int c, const int *place, int all, double *size)
 {
   const double E = dvi__yee_stored(y, c, place).re, star = dvi__yee_star(y, c, place);
@@ -76,12 +75,38 @@ static double displacement(const dvi__yee *y, int c, const int *place, int all, 
   if (all && y->sources > 0)
     driven = (1 + dvi__yee_loss(y, c, place)) *
              dvi__yee_acted(y, &y->on_edges, c, place, y->impulses);
-  *size += star * (fabs(E) + fabs(worn) + fabs(driven));
+  *size = star * (fabs(E) + fabs(worn) + fabs(driven));
   return star * (E + worn - driven);
 }
 
+/* Find D, and its size, on the edges along the divided axis before the own nodes. NULL on a whole
+ * grid. */
+static const double *displacements_below(const dvi__yee *y, int all)
+{
+  const int c = y->divided, across = 3 - c;
+  if (c < 0 || y->slot[c] < 0) return NULL;
+  double *sent = dvi__yee_plane_sent(y);
+  int place[3] = {0, 0, 0};
+  place[c] = dvi__yee_last_boxes(y);
+  for (place[across] = 0; place[across] < dvi__yee_places(y, c, across); place[across]++)
+    for (place[0] = 0; place[0] < dvi__yee_places(y, c, 0); place[0]++)
+      sent[dvi__yee_at_plane(y, 0, 0, place)] = displacement(
+          y, c, place, all, &sent[dvi__yee_at_plane(y, 1, 0, place)]);
+  return dvi__yee_pass_plane(y, 0);
+}
+
+/* Give D of an edge before a node, and its size, that of another process from `below`. */
+static double displacement_before(const dvi__yee *y, int c, const int *place, int all,
+                                  const double *below, double *size)
+{
+  if (dvi__yee_owns(y, place)) return displacement(y, c, place, all, size);
+  *size = below[dvi__yee_at_plane(y, 1, 0, place)];
+  return below[dvi__yee_at_plane(y, 0, 0, place)];
+}
+
 /* Give the outflow of D at a node, and the sum of the sizes of its terms. */
-static double outflow(const dvi__yee *y, const int *node, int all, double *size)
+static double outflow(const dvi__yee *y, const int *node, int all, const double *below,
+                      double *size)
 {
   double sum = 0;
   *size = 0;
@@ -89,9 +114,12 @@ static double outflow(const dvi__yee *y, const int *node, int all, double *size)
     int before[3] = {node[0], node[1], node[2]};
     before[c] += node[c] > 0 ? -1 : y->axis[c].cells - 1;
     if (y->slot[c] < 0) continue;
-    const double in = node[c] > 0 || y->axis[c].wraps ? displacement(y, c, before, all, size) : 0,
-                 out = node[c] < y->axis[c].cells ? displacement(y, c, node, all, size) : 0;
+    double size_in = 0, size_out = 0, in = 0, out = 0;
+    if (node[c] > 0 || y->axis[c].wraps)
+      in = displacement_before(y, c, before, all, below, &size_in);
+    if (node[c] < y->axis[c].cells) out = displacement(y, c, node, all, &size_out);
     sum += out - in;
+    *size = *size + size_in + size_out;
   }
   return sum;
 }
@@ -100,25 +128,34 @@ typedef struct charges {
   double sum, largest, size; /* sum, largest change, and largest sum of sizes of terms */
 } charges;
 
-/* Visit all nodes. Keep their outflows, or compare with those of the start. */
-static charges visit_nodes(const dvi__yee *y, int all, double *keep, const double *kept)
+/* Visit the own nodes. Keep their outflows, or compare with those of the start. */
+static void visit_own_nodes(const dvi__yee *y, int all, double *keep, const double *kept,
+                            dvi__yee_sum *sum, double *most)
 {
-  charges found = {0, 0, 0};
+  const double *below = displacements_below(y, all);
   int node[3] = {0, 0, 0};
   size_t at = 0;
-  for (node[2] = 0; node[2] < y->axis[2].nodes && y->degree == 1; node[2]++)
-    for (node[1] = 0; node[1] < y->axis[1].nodes; node[1]++)
+  for (node[2] = y->own[2][0]; node[2] < y->own[2][1]; node[2]++)
+    for (node[1] = y->own[1][0]; node[1] < y->own[1][1]; node[1]++)
       for (node[0] = 0; node[0] < y->axis[0].nodes; node[0]++, at++) {
         double size;
         if (!counts(y, node, 0)) continue;
-        const double flow = outflow(y, node, all, &size);
+        const double flow = outflow(y, node, all, below, &size);
         if (keep != NULL) keep[at] = flow;
         const double change = flow - (kept != NULL ? kept[at] : 0);
-        found.sum += flow;
-        found.largest = fmax(found.largest, fabs(change));
-        found.size = fmax(found.size, size);
+        dvi__yee_add(sum, flow);
+        most[0] = fmax(most[0], fabs(change));
+        most[1] = fmax(most[1], size);
       }
-  return found;
+}
+
+static charges visit_nodes(const dvi__yee *y, int all, double *keep, const double *kept)
+{
+  dvi__yee_sum sum = {.count = 0};
+  double most[2] = {0, 0};
+  if (y->degree == 1) visit_own_nodes(y, all, keep, kept, &sum, most);
+  dvi__yee_largest_of_all(y, 2, most);
+  return (charges){dvi__yee_sum_up(y, &sum), most[0], most[1]};
 }
 
 void dvi__yee_keep_charge(dvi__yee *y)
@@ -136,10 +173,11 @@ static double gauss_of(const dvi__yee *y)
 /* The largest outflow of B of a box beside the largest sum of its terms' sizes. */
 static double divergence_of(const dvi__yee *y)
 {
-  double largest = 0, most = 0;
+  double most[2] = {0, 0};
   int box[3] = {0, 0, 0};
-  for (box[2] = 0; box[2] < y->axis[2].cells; box[2]++)
-    for (box[1] = 0; box[1] < y->axis[1].cells; box[1]++)
+  dvi__yee_pass_faces_back(y);
+  for (box[2] = y->own[2][0]; box[2] < y->own[2][1] && box[2] < y->axis[2].cells; box[2]++)
+    for (box[1] = y->own[1][0]; box[1] < y->own[1][1] && box[1] < y->axis[1].cells; box[1]++)
       for (box[0] = 0; box[0] < y->axis[0].cells; box[0]++) {
         double sum = 0, size = 0;
         if (!counts(y, box, 1)) continue;
@@ -152,29 +190,42 @@ static double divergence_of(const dvi__yee *y)
           sum += out - in;
           size += fabs(out) + fabs(in);
         }
-        largest = fmax(largest, fabs(sum));
-        most = fmax(most, size);
+        most[0] = fmax(most[0], fabs(sum));
+        most[1] = fmax(most[1], size);
       }
-  return most > 0 ? largest / most : 0;
+  dvi__yee_largest_of_all(y, 2, most);
+  return most[1] > 0 ? most[0] / most[1] : 0;
 }
 
 /* ---- probes ---- */
+
+/* Tell if a place of a component, which may be that of the first node behind the last one, is of
+ * this process. */
+static int is_own(const dvi__yee *y, int component, const int *place)
+{
+  int inside[3];
+  for (int l = 0; l < 3; l++) {
+    const int is_behind = y->axis[l].wraps && place[l] >= dvi__yee_places(y, component, l);
+    inside[l] = is_behind ? place[l] - y->axis[l].cells : place[l];
+  }
+  return dvi__yee_owns(y, inside);
+}
 
 static double probe_value(const dvi__yee_moment *m, const dvi_yee_probe *probe)
 {
   const dvi__yee *y = m->yee;
   const int first = probe->form == DVI_FORM_B ? DVI__YEE_B : DVI__YEE_E;
-  double sum = 0;
+  dvi__accumulator sum = {.terms = 0};
   for (int c = 0; c < 3; c++)
     for (int which = 0; which < 8 && y->slot[first + c] >= 0 && probe->along[c] != 0; which++) {
       int place[3] = {0, 0, 0};
       double weight;
       dvi__yee_whitney(y, first + c, probe->at, which, place, &weight);
-      if (weight == 0) continue;
+      if (weight == 0 || !is_own(y, first + c, place)) continue;
       const value v = first == DVI__YEE_B ? dvi__yee_B_at(m, c, place) : dvi__yee_E_at(m, c, place);
-      sum += probe->along[c] * weight * v.re;
+      dvi__accumulate(&sum, probe->along[c] * weight * v.re);
     }
-  return sum;
+  return dvi__yee_sum_of_all(y, &sum);
 }
 
 /* ---- fluxes ---- */
@@ -208,16 +259,15 @@ static double H_on_plane(const dvi__yee_moment *m, int c, int axis, const int *p
   return sides > 0 ? sum / sides : 0;
 }
 
-/* Give the flux of E x H through the plane of nodes `at` of an axis, along the axis, from node
- * lower to node upper of the others. E_b H_c - E_c H_b. */
-static double flux_through(const dvi__yee_moment *m, int axis, int at, const int *lower,
-                           const int *upper)
+/* Add the flux of E x H through the plane of nodes `at` of an axis, along the axis or against it,
+ * from node lower to node upper of the others. E_b H_c - E_c H_b. */
+static void add_flux_through(const dvi__yee_moment *m, int axis, int at, const int *lower,
+                             const int *upper, double way, dvi__yee_sum *sum)
 {
   const dvi__yee *y = m->yee;
-  double sum = 0;
   for (int side = 0; side < 2; side++) {
     const int e = (axis + 1 + side) % 3, h = (axis + 2 - side) % 3;
-    const double sign = side == 0 ? 1 : -1;
+    const double sign = side == 0 ? way : -way;
     int place[3] = {0, 0, 0};
     if (y->slot[e] < 0 || y->slot[DVI__YEE_B + h] < 0) continue;
     place[axis] = at;
@@ -227,28 +277,29 @@ static double flux_through(const dvi__yee_moment *m, int axis, int at, const int
         const double before = place[h] > lower[h] ? 0.5 * a->length[place[h] - 1] : 0,
                      after = place[h] < upper[h] ? 0.5 * a->length[place[h]] : 0,
                      width = a->is_trivial ? place[h] == lower[h] : before + after;
-        if (width == 0) continue;
+        if (width == 0 || !is_own(y, e, place)) continue;
         const value E = dvi__yee_E_at(m, e, place);
-        sum += sign * width * E.re * H_on_plane(m, h, axis, place);
+        dvi__yee_add(sum, sign * width * E.re * H_on_plane(m, h, axis, place));
       }
   }
-  return sum;
 }
 
 static double flux_value(const dvi__yee_moment *m, const dvi_yee_flux *flux)
 {
   const dvi__yee *y = m->yee;
   int lower[3], upper[3], flat = -1;
-  double sum = 0;
+  dvi__yee_sum sum = {.count = 0};
   for (int l = 0; l < 3; l++) {
     lower[l] = l < y->axes ? dvi__yee_nearest(&y->axis[l], flux->lower[l]) : 0;
     upper[l] = l < y->axes ? dvi__yee_nearest(&y->axis[l], flux->upper[l]) : 1;
     if (l < y->axes && flux->lower[l] == flux->upper[l]) flat = l;
   }
-  if (flat >= 0) return flux_through(m, flat, lower[flat], lower, upper);
-  for (int l = 0; l < 3 && !y->axis[l].is_trivial; l++)
-    sum += flux_through(m, l, upper[l], lower, upper) - flux_through(m, l, lower[l], lower, upper);
-  return sum;
+  if (flat >= 0) add_flux_through(m, flat, lower[flat], lower, upper, 1, &sum);
+  for (int l = 0; l < 3 && flat < 0 && !y->axis[l].is_trivial; l++) {
+    add_flux_through(m, l, upper[l], lower, upper, 1, &sum);
+    add_flux_through(m, l, lower[l], lower, upper, -1, &sum);
+  }
+  return dvi__yee_sum_up(y, &sum);
 }
 
 /* ---- observables ---- */
@@ -270,6 +321,7 @@ const char *dvi__yee_observable(const void *self, int i)
 dvi_status dvi__yee_observe(const void *self, int i, double *found)
 {
   const dvi__yee *y = self;
+  DVI_TRY(dvi__yee_check_ranks(y));
   if (i >= FIXED) DVI_TRY(dvi__yee_set_moment(y));
   switch (i) {
   case ENERGY: *found = energy_of(y); break;
@@ -280,7 +332,7 @@ dvi_status dvi__yee_observe(const void *self, int i, double *found)
     *found = i - FIXED < y->probes ? probe_value(y->moment, &y->probe[i - FIXED])
                                    : flux_value(y->moment, &y->flux[i - FIXED - y->probes]);
   }
-  return DVI_OK;
+  return dvi__yee_check_ranks(y);
 }
 
 /* ---- checks ---- */

@@ -153,15 +153,16 @@ static void copy_rows(const dvi__yee *y, int component, const dvi__yee_axis *a, 
 }
 
 /* Copy what another end of an axis needs: E at node 0 to behind the last node, and B of the last
- * box to before the first one. */
+ * box to before the first one. Along a divided axis other processes have it. */
 static void copy_around(const dvi__yee *y, int component, int j, int k)
 {
   const dvi__yee_axis *across = &y->axis[1], *up = &y->axis[2];
   const int is_face = component >= DVI__YEE_B;
   const int from_j = is_face ? across->cells - 1 : 0, from_k = is_face ? up->cells - 1 : 0,
             to_j = is_face ? -1 : across->cells, to_k = is_face ? -1 : up->cells;
-  if (across->wraps && j == from_j) copy_rows(y, component, across, j, k, to_j, k);
-  if (up->wraps && k == from_k) copy_rows(y, component, up, j, k, j, to_k);
+  if (across->wraps && y->divided != 1 && j == from_j)
+    copy_rows(y, component, across, j, k, to_j, k);
+  if (up->wraps && y->divided != 2 && k == from_k) copy_rows(y, component, up, j, k, j, to_k);
 }
 
 void dvi__yee_wrap_rows(const dvi__yee *y, int j, int k)

@@ -6,7 +6,7 @@
  * with S of conductors and absorbing ends. This is continuous in t. At t_0 it is the start, and
  * without losses it is at t_n the mean of E^{n-1/2} and E^{n+1/2}. Errors have the order 2. */
 #include "core/status.h"
-#include "field/yee/yee.h"
+#include "field/yee/ranks.h"
 
 typedef dvi__yee_value value;
 
@@ -18,7 +18,8 @@ static value plus(value a, double factor, value b)
 /* ---- places ---- */
 
 /* Move a place into the grid along axes that repeat themselves. Give the phase that the value there
- * is multiplied by. Return 0 if the place is outside. */
+ * is multiplied by, which what came of other processes has already. Return 0 if the place is
+ * outside. */
 static int move_inside(const dvi__yee *y, int component, int *place, value *phase)
 {
   *phase = (value){1, 0};
@@ -29,6 +30,7 @@ static int move_inside(const dvi__yee *y, int component, int *place, value *phas
     if (!a->wraps) return 0;
     const double sine = place[l] < 0 ? -a->sine : a->sine;
     place[l] += place[l] < 0 ? a->cells : -a->cells;
+    if (l == y->divided && !dvi__yee_owns(y, place)) continue;
     *phase = (value){phase->re * a->cosine - phase->im * sine,
                      phase->im * a->cosine + phase->re * sine};
   }
@@ -103,6 +105,14 @@ static value change_of_face(const dvi__yee_moment *m, int c, const int *place)
   return sum;
 }
 
+/* Give what another process found before the own planes. */
+static value B_below(const dvi__yee_moment *m, int c, const int *place)
+{
+  const dvi__yee *y = m->yee;
+  return (value){m->below[dvi__yee_at_plane(y, c, 0, place)],
+                 y->copies > 1 ? m->below[dvi__yee_at_plane(y, c, 1, place)] : 0};
+}
+
 value dvi__yee_B_at(const dvi__yee_moment *m, int c, const int *place)
 {
   const dvi__yee *y = m->yee;
@@ -111,8 +121,29 @@ value dvi__yee_B_at(const dvi__yee_moment *m, int c, const int *place)
   if (y->slot[DVI__YEE_B + c] < 0 || !move_inside(y, DVI__YEE_B + c, inside, &phase))
     return (value){0, 0};
   value B = stored_inside(y, DVI__YEE_B + c, inside);
+  if (m->part != 0 && !dvi__yee_owns(y, inside)) return times(phase, B_below(m, c, inside));
   if (m->part != 0) B = plus(B, m->part, change_of_face(m, c, inside));
   return times(phase, B);
+}
+
+/* Without a part of a step B is what is stored, and other processes have it. */
+void dvi__yee_pass_moment(dvi__yee_moment *m)
+{
+  const dvi__yee *y = m->yee;
+  if (y->divided < 0 || m->part == 0) return;
+  double *sent = dvi__yee_plane_sent(y);
+  int place[3] = {0, 0, 0}, *across = &place[3 - y->divided];
+  place[y->divided] = dvi__yee_last_boxes(y);
+  for (int c = 0; c < 3; c++) {
+    if (y->slot[DVI__YEE_B + c] < 0 || c == y->divided) continue;
+    for (*across = 0; *across < dvi__yee_places(y, DVI__YEE_B + c, 3 - y->divided); ++*across)
+      for (place[0] = 0; place[0] < dvi__yee_places(y, DVI__YEE_B + c, 0); place[0]++) {
+        const value B = dvi__yee_B_at(m, c, place);
+        sent[dvi__yee_at_plane(y, c, 0, place)] = B.re;
+        if (y->copies > 1) sent[dvi__yee_at_plane(y, c, 1, place)] = B.im;
+      }
+  }
+  m->below = dvi__yee_pass_plane(y, 1);
 }
 
 /* ---- E ---- */

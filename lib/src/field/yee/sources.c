@@ -8,7 +8,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "field/yee/yee.h"
+#include "field/yee/ranks.h"
 #include "num/compensated.h"
 
 /* ---- signals ---- */
@@ -55,14 +55,26 @@ void dvi__yee_restart_impulses(dvi__yee *y)
   }
 }
 
+/* Without signals there is nothing that can fail on some processes only. */
+static dvi_status agree_on_signals(const dvi__yee *y, dvi_status status)
+{
+  return y->sources + y->beams > 0 ? dvi__yee_agree(y, status) : status;
+}
+
+/* Ask for all signals of a step. */
+static dvi_status ask(dvi__yee *y, int64_t step, double *drive)
+{
+  const double t = y->t0 + (double)step * y->dt, half = 0.5 * y->dt;
+  for (int i = 0; i < y->sources; i++) DVI_TRY(impulse_of(&y->source[i], t, half, half, &drive[i]));
+  return dvi__yee_ask_waves(y, y->t0 + ((double)step + 0.5) * y->dt);
+}
+
 dvi_status dvi__yee_prepare(dvi__yee *y, int steps, int *ready)
 {
   for (*ready = 0; *ready < steps; (*ready)++) {
-    const double t = y->t0 + (double)(y->step + *ready + 1) * y->dt, half = 0.5 * y->dt;
     double *drive = y->drive + (size_t)*ready * (size_t)y->drives;
-    for (int i = 0; i < y->sources; i++)
-      DVI_TRY(impulse_of(&y->source[i], t, half, half, &drive[i]));
-    DVI_TRY(dvi__yee_prepare_waves(y, y->step + *ready + 1, drive));
+    DVI_TRY(agree_on_signals(y, ask(y, y->step + *ready + 1, drive)));
+    dvi__yee_move_waves(y, drive);
   }
   return DVI_OK;
 }
@@ -75,6 +87,19 @@ void dvi__yee_take_impulses(dvi__yee *y, int steps)
                            y->drive[(size_t)step * (size_t)y->drives + (size_t)i]);
 }
 
+/* Set the drives of a moment of currents and dipoles. */
+static dvi_status set_impulses(const dvi__yee *y, double part, double *row)
+{
+  for (int i = 0; i < y->sources; i++) {
+    double impulse;
+    const double from_half = (part - 0.5) * y->dt;
+    DVI_TRY(impulse_of(&y->source[i], y->t, from_half, 0, &impulse));
+    row[i] = 0;
+    row[y->drives + i] = impulse;
+  }
+  return DVI_OK;
+}
+
 dvi_status dvi__yee_set_moment(const dvi__yee *y)
 {
   dvi__yee_moment *m = y->moment;
@@ -83,14 +108,10 @@ dvi_status dvi__yee_set_moment(const dvi__yee *y)
   double *row = y->drive + (size_t)y->together * (size_t)y->drives;
   *m = (dvi__yee_moment){.yee = y, .on_faces = row, .on_edges = row + y->drives};
   m->part = since / y->dt > dvi__yee_spare(y, y->t) ? fmin(since / y->dt, 1) : 0;
-  for (int i = 0; i < y->sources; i++) {
-    double impulse;
-    const double from_half = (m->part - 0.5) * y->dt;
-    DVI_TRY(impulse_of(&y->source[i], y->t, from_half, 0, &impulse));
-    row[i] = 0;
-    row[y->drives + i] = impulse;
-  }
+  DVI_TRY(agree_on_signals(y, set_impulses(y, m->part, row)));
   dvi__yee_sample_waves(m, row, row + y->drives);
+  dvi__yee_pass_moment(m);
+  DVI_TRY(dvi__yee_check_ranks(y));
   m->is_now = 1;
   return DVI_OK;
 }
@@ -100,7 +121,7 @@ dvi_status dvi__yee_set_moment(const dvi__yee *y)
 /* Let a source act on an edge with the profile J_e. */
 static dvi_status drive_edge(dvi__yee *y, int number, int c, const int *place, double profile)
 {
-  if (profile == 0 || !dvi__yee_is_unknown(y, c, place)) return DVI_OK;
+  if (profile == 0 || !dvi__yee_is_unknown(y, c, place) || !dvi__yee_owns(y, place)) return DVI_OK;
   const double s = dvi__yee_loss(y, c, place);
   return dvi__yee_add_act(y, &y->on_edges, c, place, number,
                           -profile / (dvi__yee_star(y, c, place) * (1 + s)), 0);
@@ -209,8 +230,8 @@ static dvi_status add_current(dvi__yee *y, const dvi_yee_current *current, int n
   for (int c = 0, which = 0; c < 3; c++) {
     int place[3];
     if (y->slot[c] < 0) continue;
-    for (place[2] = 0; place[2] < dvi__yee_places(y, c, 2); place[2]++)
-      for (place[1] = 0; place[1] < dvi__yee_places(y, c, 1); place[1]++)
+    for (place[2] = dvi__yee_begin(y, 2); place[2] < dvi__yee_end(y, c, 2); place[2]++)
+      for (place[1] = dvi__yee_begin(y, 1); place[1] < dvi__yee_end(y, c, 1); place[1]++)
         for (place[0] = 0; place[0] < dvi__yee_places(y, c, 0); place[0]++) {
           double profile;
           DVI_TRY(profile_of(y, current, c, which, place, &profile));

@@ -3,7 +3,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "field/yee/yee.h"
+#include "field/yee/ranks.h"
 
 static void set_values(dvi__yee *y, dvi_march_form form, const double *values)
 {
@@ -18,8 +18,10 @@ static void set_values(dvi__yee *y, dvi_march_form form, const double *values)
 
 void dvi__yee_wrap_values(dvi__yee *y)
 {
-  for (int k = 0; k < y->axis[2].nodes; k++)
-    for (int j = 0; j < y->axis[1].nodes; j++) dvi__yee_wrap_rows(y, j, k);
+  for (int k = y->own[2][0]; k < y->own[2][1]; k++)
+    for (int j = y->own[1][0]; j < y->own[1][1]; j++) dvi__yee_wrap_rows(y, j, k);
+  dvi__yee_pass_edges(y);
+  dvi__yee_pass_faces(y);
 }
 
 /* Give no field to edges on conductors. */
@@ -65,21 +67,27 @@ static void clear(dvi__yee *y)
 /* Make room for the charges of a start with a field. Without one there are none. */
 static dvi_status make_charge(dvi__yee *y, int has_field)
 {
-  const size_t count = (size_t)y->axis[0].nodes * (size_t)y->axis[1].nodes *
-                       (size_t)y->axis[2].nodes;
+  const size_t count = dvi__yee_count_nodes(y);
   if (!has_field || y->degree == 0 || y->charge != NULL) return DVI_OK;
   y->charge = DVI_NEW(double, count);
   return y->charge != NULL ? DVI_OK
                            : dvi__fail(DVI_NO_MEMORY, "yee: no memory for %zu charges", count);
 }
 
+static dvi_status prepare(dvi__yee *y, const dvi_march_state *state)
+{
+  DVI_TRY(make_charge(y, state->E != NULL));
+  DVI_TRY(dvi__yee_start_sources(y, state->t));
+  return dvi__yee_ask_waves(y, state->t + 0.5 * y->dt);
+}
+
 /* Memory and signals are asked for before anything changes. */
 dvi_status dvi__yee_start(void *self, const dvi_march_state *state)
 {
   dvi__yee *y = self;
-  DVI_TRY(make_charge(y, state->E != NULL));
-  DVI_TRY(dvi__yee_start_sources(y, state->t));
-  DVI_TRY(dvi__yee_start_waves(y, state->t));
+  dvi__yee_begin_ranks(y);
+  DVI_TRY(dvi__yee_agree(y, prepare(y, state)));
+  dvi__yee_start_waves(y);
   dvi__yee_restart_impulses(y);
   y->t0 = y->t = state->t;
   y->step = 0;
@@ -92,5 +100,5 @@ dvi_status dvi__yee_start(void *self, const dvi_march_state *state)
   if (y->charge != NULL) dvi__yee_keep_charge(y);
   take_half_step(y, state->B != NULL);
   dvi__yee_wrap_values(y);
-  return DVI_OK;
+  return dvi__yee_check_ranks(y);
 }

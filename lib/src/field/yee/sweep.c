@@ -8,7 +8,7 @@
  * the tile before by one plane at least. */
 #include "core/memory.h"
 #include "core/status.h"
-#include "field/yee/yee.h"
+#include "field/yee/ranks.h"
 
 enum { CACHE = 3 << 18, DEFAULT_TOGETHER = 6, LEAST_TILE = 8 };
 
@@ -19,7 +19,7 @@ typedef struct sweep {
 
 static int rows_of(const dvi__yee *y)
 {
-  return y->axis[1].nodes;
+  return y->own[1][1] - y->own[1][0];
 }
 
 static int tiles_of(const dvi__yee *y, int steps)
@@ -36,25 +36,35 @@ static dvi__yee_worker worker_of(const dvi__yee *y, int member, int step)
   return worker;
 }
 
-/* Take a step of the rows first to last-1 of a plane. On axes that repeat themselves the faces of
- * the last box come first, because E at the first node needs them. */
+/* Give the place along an axis whose faces come before all others, because E at the first node
+ * needs them, or another process does, or -1. */
+static int early(const dvi__yee *y, int axis)
+{
+  if (axis == y->divided) return dvi__yee_last_boxes(y);
+  return y->axis[axis].wraps ? y->axis[axis].cells - 1 : -1;
+}
+
+/* Take a step of the rows first to last-1 of a plane. If y is divided, the early ones are done. */
 static void take_rows(const dvi__yee_worker *w, int first, int last, int k)
 {
-  const dvi__yee_axis *y = &w->yee->axis[1], *z = &w->yee->axis[2];
-  const int is_done = z->wraps && k == z->cells - 1;
-  if (y->wraps && first == 0 && !is_done) dvi__yee_update_faces(w, y->cells - 1, k);
+  const dvi__yee *y = w->yee;
+  const int is_done = k == early(y, 2), early_row = early(y, 1);
+  if (early_row >= 0 && y->divided != 1 && first == 0 && !is_done)
+    dvi__yee_update_faces(w, early_row, k);
   for (int j = first; j < last; j++) {
-    if (!is_done && !(y->wraps && j == y->cells - 1)) dvi__yee_update_faces(w, j, k);
+    if (!is_done && j != early_row) dvi__yee_update_faces(w, j, k);
     dvi__yee_update_edges(w, j, k);
   }
 }
 
-static void take_faces_of_last_plane(void *user, int member)
+static void take_early_faces(void *user, int member)
 {
   const sweep *s = user;
-  const dvi__yee_worker worker = worker_of(s->yee, member, 0);
-  for (int j = member; j < rows_of(s->yee); j += s->yee->threads)
-    dvi__yee_update_faces(&worker, j, s->yee->axis[2].cells - 1);
+  const dvi__yee *y = s->yee;
+  const dvi__yee_worker worker = worker_of(y, member, 0);
+  if (y->divided == 1 && member == 0) dvi__yee_update_faces(&worker, early(y, 1), 0);
+  for (int j = member; j < rows_of(y) && early(y, 2) >= 0; j += y->threads)
+    dvi__yee_update_faces(&worker, j, early(y, 2));
 }
 
 static void await_tile(const dvi__yee *y, int tile, int front)
@@ -67,13 +77,16 @@ static void await_tile(const dvi__yee *y, int tile, int front)
 static void take_tile(const sweep *s, int member, int tile)
 {
   const dvi__yee *y = s->yee;
-  const int planes = y->axis[2].nodes, rows = rows_of(y), skew = !y->axis[1].is_trivial;
+  const int planes = y->own[2][1] - y->own[2][0], rows = rows_of(y), left = y->own[1][0],
+            below = y->own[2][0], skew = !y->axis[1].is_trivial;
   for (int front = 0; front < planes + s->steps - 1; front++) {
     if (tile > 0) await_tile(y, tile - 1, front);
     for (int step = 0; step < s->steps; step++) {
       const int k = front - step, low = tile * y->tile - skew * step, high = low + y->tile;
       const dvi__yee_worker worker = worker_of(y, member, step);
-      if (k >= 0 && k < planes) take_rows(&worker, low > 0 ? low : 0, high < rows ? high : rows, k);
+      if (k >= 0 && k < planes)
+        take_rows(&worker, left + (low > 0 ? low : 0), left + (high < rows ? high : rows),
+                  below + k);
     }
     atomic_store_explicit(&y->progress[tile], front + 1, memory_order_release);
   }
@@ -98,15 +111,17 @@ void dvi__yee_sweep(dvi__yee *y, int steps)
   sweep s = {y, steps, tiles_of(y, steps)};
   y->lanes = dvi__yee_lanes_in_use();
   for (int tile = 0; tile < s.tiles; tile++) atomic_store(&y->progress[tile], 0);
-  if (y->axis[2].wraps) run(y, take_faces_of_last_plane, &s);
+  if (y->axis[2].wraps || y->divided >= 0) run(y, take_early_faces, &s);
+  dvi__yee_pass_faces(y);
   run(y, take_tiles, &s);
+  dvi__yee_pass_edges(y);
 }
 
 /* ---- tiles ---- */
 
 static int may_go_together(const dvi__yee *y)
 {
-  return !y->axis[1].wraps && !y->axis[2].wraps;
+  return !y->axis[1].wraps && !y->axis[2].wraps && y->divided < 0;
 }
 
 /* Choose how many steps go together, and tiles whose planes of all steps stay in a cache. */

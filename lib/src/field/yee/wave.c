@@ -181,23 +181,23 @@ static dvi_status signal_at(const dvi__yee_beam *beam, double t, double *value)
                    failed != 0 ? failed : *value, t + beam->delay);
 }
 
-dvi_status dvi__yee_start_waves(dvi__yee *y, double t0)
+dvi_status dvi__yee_ask_waves(dvi__yee *y, double t)
 {
-  for (int i = 0; i < y->beams; i++)
-    DVI_TRY(signal_at(&y->beam[i], t0 + 0.5 * y->dt, &y->beam[i].next));
+  for (int i = 0; i < y->beams; i++) DVI_TRY(signal_at(&y->beam[i], t, &y->beam[i].next));
+  return DVI_OK;
+}
+
+void dvi__yee_start_waves(dvi__yee *y)
+{
   for (int i = 0; i < y->beams; i++) {
     dvi__yee_beam *beam = &y->beam[i];
     for (int q = 0; q < 2 * beam->count + 1; q++) beam->line[q] = y->drive[beam->from + q] = 0;
     beam->line[0] = beam->next;
   }
-  return DVI_OK;
 }
 
-/* Signals of all waves are asked for before the first one moves. */
-dvi_status dvi__yee_prepare_waves(dvi__yee *y, int64_t step, double *drive)
+void dvi__yee_move_waves(dvi__yee *y, double *drive)
 {
-  const double t = y->t0 + ((double)step + 0.5) * y->dt;
-  for (int i = 0; i < y->beams; i++) DVI_TRY(signal_at(&y->beam[i], t, &y->beam[i].next));
   for (int i = 0; i < y->beams; i++) {
     dvi__yee_beam *beam = &y->beam[i];
     const int n = beam->count;
@@ -208,7 +208,6 @@ dvi_status dvi__yee_prepare_waves(dvi__yee *y, int64_t step, double *drive)
     for (int q = 1; q < n; q++) E[q] = next_E(beam, q);
     E[0] = beam->next;
   }
-  return DVI_OK;
 }
 
 void dvi__yee_sample_waves(const dvi__yee_moment *m, double *on_faces, double *on_edges)
@@ -258,6 +257,7 @@ static dvi_status add_incident(dvi__yee *y, const dvi__yee_beam *beam, int compo
   double size = is_H ? beam->H[c] : beam->E[c], w[2];
   for (int l = 0; l < 3; l++)
     if (dvi__yee_reaches(incident, l)) size *= y->axis[l].length[there[l]];
+  if (!dvi__yee_owns(y, place)) return DVI_OK;
   if (size == 0 || place[0] >= dvi__yee_places(y, component, 0) ||
       place[1] >= dvi__yee_places(y, component, 1) || place[2] >= dvi__yee_places(y, component, 2))
     return DVI_OK;
@@ -288,11 +288,12 @@ static dvi_status add_pair(dvi__yee *y, const dvi__yee_beam *beam, int axis, int
   if (end == 0) face[axis]--;
   if (y->slot[c] < 0 || y->slot[DVI__YEE_B + b] < 0) return DVI_OK;
   if (!dvi__yee_is_unknown(y, c, edge)) return DVI_OK;
-  DVI_TRY(check_vacuum(y, c, edge, b, face));
+  if (!dvi__yee_owns(y, edge) && !dvi__yee_owns(y, face)) return DVI_OK;
+  if (dvi__yee_owns(y, edge)) DVI_TRY(check_vacuum(y, c, edge, b, face));
   const dvi__yee_axis *a = &y->axis[axis];
   const double sign = (end == 0) == is_next ? -1 : 1,
                change = end == 0 ? a->down[edge[axis]] : a->up[edge[axis]],
-               factor = change / (1 + dvi__yee_loss(y, c, edge));
+               factor = dvi__yee_owns(y, edge) ? change / (1 + dvi__yee_loss(y, c, edge)) : 0;
   DVI_TRY(add_incident(y, beam, DVI__YEE_B + b, face, c, edge, sign * y->dt));
   return add_incident(y, beam, c, edge, DVI__YEE_B + b, face, sign * factor);
 }

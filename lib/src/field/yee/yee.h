@@ -85,6 +85,9 @@ typedef struct dvi__yee_beam dvi__yee_beam;
 /* A time between the last step and the next one. See sample.c. */
 typedef struct dvi__yee_moment dvi__yee_moment;
 
+/* How processes speak with each other about the planes of a divided grid. See ranks.c. */
+typedef struct dvi__yee_planes dvi__yee_planes;
+
 typedef struct dvi__yee {
   int axes, degree;
   dvi__yee_axis axis[3];
@@ -94,6 +97,8 @@ typedef struct dvi__yee {
   int edges_slots;   /* slots of E. They come first */
   size_t width;      /* numbers of a row */
   size_t count;      /* places that a loop passes over */
+  int divided;       /* the axis that processes divide among them, or -1 */
+  int own[3][2];     /* nodes own[l][0] to own[l][1]-1 of an axis are of this process */
   size_t rows[2];    /* rows along y, planes along z, with the layers around them */
   size_t size;       /* numbers of a copy */
   ptrdiff_t next[3]; /* from a place to the next one along an axis, 0 if trivial */
@@ -108,8 +113,8 @@ typedef struct dvi__yee {
   int64_t *wall_first; /* [rows of edges + 1] first ones of the rows. NULL without them */
   dvi__yee_wall *wall;
   double dt, bound, t0, t;
-  int64_t step; /* steps since the start: B at t0 + step dt, E half a step later */
-  int64_t unknowns, faces;
+  int64_t step;            /* steps since the start: B at t0 + step dt, E half a step later */
+  int64_t unknowns, faces; /* of the whole grid */
   dvi__yee_source *source; /* [sources] */
   int sources;
   dvi__yee_beam *beam; /* [beams] */
@@ -118,7 +123,8 @@ typedef struct dvi__yee {
   int drives;    /* numbers that act on a step */
   double *drive; /* [together + 2][drives], the last two for samples */
   dvi__yee_moment *moment;
-  double *charge; /* [nodes] outflow of D at the start, NULL before one with a field */
+  dvi__yee_planes *planes; /* NULL unless the grid is divided */
+  double *charge;          /* [nodes] outflow of D at the start, NULL before one with a field */
   dvi_yee_probe *probe;
   dvi_yee_flux *flux;
   char *names;
@@ -135,11 +141,21 @@ enum { DVI__YEE_SCRATCH = 10, DVI__YEE_MOST_TOGETHER = 16 };
 
 /* ---- places ---- */
 
+/* Give the number of a place along an axis among those in memory. The axis that is divided has
+ * planes of the other processes beside the own ones, and may repeat itself. */
+static inline size_t dvi__yee_row_along(const dvi__yee *y, int axis, int i)
+{
+  const dvi__yee_axis *a = &y->axis[axis];
+  int row = i - y->own[axis][0] + !a->is_trivial;
+  if (axis == y->divided && row < 0) row += a->cells;
+  if (axis == y->divided && row >= (int)y->rows[axis - 1]) row -= a->cells;
+  return (size_t)row;
+}
+
 /* Give the number of the rows at (j, k), which may be -1 on axes that the grid has. */
 static inline size_t dvi__yee_row(const dvi__yee *y, int j, int k)
 {
-  const int below = k + !y->axis[2].is_trivial, left = j + !y->axis[1].is_trivial;
-  return (size_t)below * y->rows[0] + (size_t)left;
+  return dvi__yee_row_along(y, 2, k) * y->rows[0] + dvi__yee_row_along(y, 1, j);
 }
 
 /* Give the place 0 of a component's row. `component` is DVI__YEE_E + c or DVI__YEE_B + c. */
@@ -182,6 +198,31 @@ static inline int dvi__yee_places(const dvi__yee *y, int component, int axis)
 {
   const dvi__yee_axis *a = &y->axis[axis];
   return dvi__yee_reaches(component, axis) ? a->cells : a->nodes;
+}
+
+/* Give the first place of a component along an axis that this process has, and the one behind the
+ * last. */
+static inline int dvi__yee_begin(const dvi__yee *y, int axis)
+{
+  return y->own[axis][0];
+}
+static inline int dvi__yee_end(const dvi__yee *y, int component, int axis)
+{
+  const int places = dvi__yee_places(y, component, axis);
+  return y->own[axis][1] < places ? y->own[axis][1] : places;
+}
+
+/* Tell if a place is of this process. */
+static inline int dvi__yee_owns(const dvi__yee *y, const int *place)
+{
+  const int l = y->divided;
+  return l < 0 || (place[l] >= y->own[l][0] && place[l] < y->own[l][1]);
+}
+
+/* Give the last plane of boxes along the divided axis. */
+static inline int dvi__yee_last_boxes(const dvi__yee *y)
+{
+  return dvi__yee_end(y, y->divided, y->divided) - 1;
 }
 
 /* Tell if E_c has an unknown at the place i of an axis. */
@@ -271,7 +312,13 @@ int dvi__yee_pieces(const dvi__yee_axis *axis, int node, int *cell, double *lowe
 /* Make the grid's axes and its sizes without any memory for fields. */
 dvi_status dvi__yee_make_grid(const dvi_yee_terms *terms, dvi__yee *yee);
 
+/* Give the number of a form's cells that this process has, and of all. */
 int64_t dvi__yee_form_size(const dvi__yee *yee, dvi_march_form form);
+int64_t dvi__yee_whole_size(const dvi__yee *yee, dvi_march_form form);
+/* Give the number of nodes that this process has. */
+size_t dvi__yee_count_nodes(const dvi__yee *yee);
+/* Give the number of a place among the cells of its form in the whole grid. */
+int64_t dvi__yee_whole_number(const dvi__yee *yee, int component, const int *place);
 /* Give the component and the place of a form's cell. */
 void dvi__yee_place_of(const dvi__yee *yee, dvi_march_form form, int64_t number, int *component,
                        int *place);
@@ -296,7 +343,7 @@ void dvi__yee_stars(const dvi__yee *yee, int component, const int *place, int co
 
 /* Give the largest stable step, infinite if nothing moves. */
 dvi_status dvi__yee_find_bound(dvi__yee *yee, double *bound);
-/* Give the place x [3] where boxes and materials demand the smallest step. */
+/* Give the place x [3] where boxes and materials demand the smallest step, in the whole grid. */
 void dvi__yee_tightest(const dvi__yee *yee, double *x);
 
 /* ---- lanczos.c ---- */
@@ -348,7 +395,8 @@ void dvi__yee_absorb(const dvi__yee *yee, int c, int j, int k, const double *bef
 /* ---- start.c ---- */
 
 dvi_status dvi__yee_start(void *yee, const dvi_march_state *state);
-/* Copy values at ends of axes that repeat themselves to where the first step looks for them. */
+/* Copy values at ends of axes that repeat themselves, and of other processes, to where the first
+ * step looks for them. */
 void dvi__yee_wrap_values(dvi__yee *yee);
 
 /* ---- sources.c ---- */
@@ -395,6 +443,7 @@ struct dvi__yee_moment {
   double part;            /* from 0 to 1, the part of the next step */
   const double *on_faces; /* drives of B's next step */
   const double *on_edges; /* drives of E from the last half step to this time */
+  const double *below;    /* B at this time before the own planes of a divided grid */
 };
 
 /* Give what E_c and B_c are at a place, which may be beyond the end of an axis that repeats
@@ -402,6 +451,8 @@ struct dvi__yee_moment {
 dvi__yee_value dvi__yee_stored(const dvi__yee *yee, int component, const int *place);
 dvi__yee_value dvi__yee_B_at(const dvi__yee_moment *moment, int c, const int *place);
 dvi__yee_value dvi__yee_E_at(const dvi__yee_moment *moment, int c, const int *place);
+/* Give B at the moment to the process after this one, which needs it for E. */
+void dvi__yee_pass_moment(dvi__yee_moment *moment);
 /* Move E_c at a place from the start to half a step later, with the curl of H if there is B. */
 void dvi__yee_start_edge(const dvi__yee_moment *moment, int c, const int *place, int has_B);
 /* Set the moment to the march's time, and prepare its drives. */
@@ -413,9 +464,11 @@ dvi_status dvi__yee_sample(const void *yee, dvi_march_form form, int64_t count, 
 
 dvi_status dvi__yee_make_waves(const dvi_yee_terms *terms, dvi__yee *yee);
 void dvi__yee_clear_waves(dvi__yee *yee);
-dvi_status dvi__yee_start_waves(dvi__yee *yee, double t0);
-/* Move the waves to the step, and give their drives. */
-dvi_status dvi__yee_prepare_waves(dvi__yee *yee, int64_t step, double *drive);
+/* Ask for the signals of all waves at a time, before the first one moves. */
+dvi_status dvi__yee_ask_waves(dvi__yee *yee, double t);
+void dvi__yee_start_waves(dvi__yee *yee);
+/* Move the waves by a step, and give their drives. */
+void dvi__yee_move_waves(dvi__yee *yee, double *drive);
 /* Give the drives of a moment. */
 void dvi__yee_sample_waves(const dvi__yee_moment *moment, double *on_faces, double *on_edges);
 /* Give a wave's part of the state. */

@@ -1,0 +1,245 @@
+/* A grid whose last axis is divided among processes.
+ *
+ * Places keep their numbers of the whole grid, and so do the arrays of an axis. Rows are in memory
+ * only for the own planes, and one more at both sides: below are B of the last boxes before, above
+ * is E of the first nodes behind. A step takes B of the last own boxes first and gives it on, as
+ * on an axis that repeats itself, and gives on E of the first nodes when it is done. So all values
+ * come from the same operations as on one process. Sums over all processes are exact until they
+ * are rounded once (num/accumulator.h). */
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "field/yee/ranks.h"
+
+struct dvi__yee_planes {
+  dvi_yee_ranks ranks;
+  int failed;                       /* what a function returned, 0 for success */
+  size_t across;                    /* rows of a plane */
+  double *sent, *received, *moment; /* [copies*3*across*width], the last for a moment */
+};
+
+static const char name[] = "xyz";
+
+/* ---- division ---- */
+
+static dvi_status check_ranks(const dvi_yee_ranks *r)
+{
+  if (r->size != sizeof *r)
+    return dvi__fail(DVI_BAD_ARGUMENT, "yee: set ranks.size to sizeof(dvi_yee_ranks)");
+  if (r->count < 1 || r->rank < 0 || r->rank >= r->count)
+    return dvi__fail(DVI_BAD_ARGUMENT, "yee: there is no process %d of %d", r->rank, r->count);
+  if (r->pass == NULL || r->sum == NULL || r->largest == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "yee: the functions by which processes speak are not all given");
+  return DVI_OK;
+}
+
+dvi_status dvi__yee_divide(const dvi_yee_terms *terms, dvi__yee *y)
+{
+  const int last = y->axes - 1, cells = y->axis[last].cells;
+  const dvi_yee_ranks *r = terms->ranks;
+  y->divided = -1;
+  for (int l = 0; l < 3; l++) {
+    y->own[l][0] = 0;
+    y->own[l][1] = y->axis[l].nodes;
+  }
+  if (r == NULL) return DVI_OK;
+  DVI_TRY(check_ranks(r));
+  if (r->count == 1) return DVI_OK;
+  if (last == 0)
+    return dvi__fail(DVI_UNSUPPORTED,
+                     "yee: a grid of one axis cannot be divided among %d processes; run it on one",
+                     r->count);
+  if (cells / 2 < r->count)
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "yee: axis %c has %d boxes, and %d processes need 2 each; run fewer processes",
+                     name[last], cells, r->count);
+  y->divided = last;
+  y->own[last][0] = (int)((int64_t)cells * r->rank / r->count);
+  if (r->rank < r->count - 1) y->own[last][1] = (int)((int64_t)cells * (r->rank + 1) / r->count);
+  return DVI_OK;
+}
+
+static size_t count_numbers(const dvi__yee *y)
+{
+  const size_t across = y->divided == 2 ? y->rows[0] : 1;
+  return (size_t)y->copies * 3 * across * y->width;
+}
+
+dvi_status dvi__yee_make_planes(const dvi_yee_terms *terms, dvi__yee *y)
+{
+  if (y->divided < 0) return DVI_OK;
+  const size_t count = count_numbers(y);
+  y->planes = DVI_NEW(dvi__yee_planes, 1);
+  if (y->planes != NULL) {
+    y->planes->ranks = *terms->ranks;
+    y->planes->across = y->divided == 2 ? y->rows[0] : 1;
+    y->planes->sent = DVI_NEW(double, count);
+    y->planes->received = DVI_NEW(double, count);
+    y->planes->moment = DVI_NEW(double, count);
+  }
+  if (y->planes != NULL && y->planes->sent != NULL && y->planes->received != NULL &&
+      y->planes->moment != NULL)
+    return DVI_OK;
+  return dvi__fail(DVI_NO_MEMORY, "yee: no memory for planes of %zu numbers", count);
+}
+
+void dvi__yee_clear_planes(dvi__yee *y)
+{
+  if (y->planes == NULL) return;
+  dvi__release(y->planes->sent);
+  dvi__release(y->planes->received);
+  dvi__release(y->planes->moment);
+  dvi__release(y->planes);
+}
+
+/* ---- failures ---- */
+
+dvi_status dvi__yee_check_ranks(const dvi__yee *y)
+{
+  if (y->planes == NULL || y->planes->failed == 0) return DVI_OK;
+  return dvi__fail(DVI_CALLBACK_FAILED,
+                   "yee: process %d of %d could not speak with the others: code %d",
+                   y->planes->ranks.rank, y->planes->ranks.count, y->planes->failed);
+}
+
+void dvi__yee_begin_ranks(const dvi__yee *y)
+{
+  if (y->planes != NULL) y->planes->failed = 0;
+}
+
+dvi_status dvi__yee_agree(const dvi__yee *y, dvi_status status)
+{
+  double failed = status != DVI_OK;
+  if (y->planes == NULL) return status;
+  dvi__yee_largest_of_all(y, 1, &failed);
+  if (status != DVI_OK) return status;
+  DVI_TRY(dvi__yee_check_ranks(y));
+  return failed == 0
+             ? DVI_OK
+             : dvi__fail(DVI_CALLBACK_FAILED,
+                         "yee: another one of %d processes failed, whose sentence tells why",
+                         y->planes->ranks.count);
+}
+
+/* ---- sums ---- */
+
+void dvi__yee_largest_of_all(const dvi__yee *y, int count, double *number)
+{
+  dvi__yee_planes *p = y->planes;
+  if (p != NULL && p->failed == 0) p->failed = p->ranks.largest(count, number, p->ranks.user);
+}
+
+double dvi__yee_sum_of_all(const dvi__yee *y, dvi__accumulator *sum)
+{
+  dvi__yee_planes *p = y->planes;
+  if (p != NULL && p->failed == 0) {
+    dvi__accumulator_carry(sum);
+    p->failed = p->ranks.sum(DVI__SUM_NUMBERS, sum->number, p->ranks.user);
+  }
+  return dvi__accumulator_value(sum);
+}
+
+double dvi__yee_sum_up(const dvi__yee *y, dvi__yee_sum *s)
+{
+  while (s->count > 0 && s->count < DVI__SUM_TERMS) s->term[s->count++] = 0;
+  if (s->count > 0) dvi__accumulate_terms(&s->sum, s->term);
+  s->count = 0;
+  return dvi__yee_sum_of_all(y, &s->sum);
+}
+
+/* ---- planes ---- */
+
+/* Send the first `count` numbers for each copy. Return 0 if there is no process to receive from. */
+static int send(const dvi__yee *y, int way, size_t count, double *received)
+{
+  dvi__yee_planes *p = y->planes;
+  const dvi_yee_ranks *r = &p->ranks;
+  const int around = y->axis[y->divided].wraps, from = r->rank - way;
+  if (p->failed != 0) return 0;
+  p->failed = r->pass(way, around, (int64_t)count * y->copies, p->sent, received, r->user);
+  return p->failed == 0 && (around || (from >= 0 && from < r->count));
+}
+
+/* Multiply what has come around the end of an axis by its phase, as row.c does. */
+static void turn(const dvi__yee *y, int way, size_t count, double *x)
+{
+  const dvi__yee_axis *a = &y->axis[y->divided];
+  const int from = y->planes->ranks.rank - way;
+  if (y->copies == 1 || (from >= 0 && from < y->planes->ranks.count)) return;
+  const double sine = way > 0 ? -a->sine : a->sine;
+  for (size_t i = 0; i < count; i++) {
+    const double re = x[i], im = x[count + i];
+    x[i] = a->cosine * re - sine * im;
+    x[count + i] = a->cosine * im + sine * re;
+  }
+}
+
+/* Copy a plane of the components of a form, those along the divided axis or the others, from or to
+ * a buffer. Give the numbers of a copy. */
+static size_t copy_plane(const dvi__yee *y, int form, int along, int plane, double *to,
+                         const double *from)
+{
+  const size_t across = y->planes->across, row = dvi__yee_row_along(y, y->divided, plane) * across,
+               block = (size_t)y->components * y->width, bytes = y->width * sizeof(double);
+  size_t at = 0;
+  for (int copy = 0; copy < y->copies; copy++)
+    for (int c = form; c < form + 3; c++) {
+      if (y->slot[c] < 0 || (c % 3 == y->divided) != along) continue;
+      for (size_t j = 0; j < across; j++, at += y->width) {
+        double *x = y->state[copy] + (row + j) * block + (size_t)y->slot[c] * y->width;
+        memcpy(to != NULL ? to + at : x, to != NULL ? x : from + at, bytes);
+      }
+    }
+  return at / (size_t)y->copies;
+}
+
+static void pass(const dvi__yee *y, int form, int along, int way, int from, int to)
+{
+  if (y->planes == NULL || y->planes->failed != 0) return;
+  const size_t count = copy_plane(y, form, along, from, y->planes->sent, NULL);
+  if (!send(y, way, count, y->planes->received)) return;
+  turn(y, way, count, y->planes->received);
+  (void)copy_plane(y, form, along, to, NULL, y->planes->received);
+}
+
+void dvi__yee_pass_faces(const dvi__yee *y)
+{
+  if (y->divided < 0) return;
+  pass(y, DVI__YEE_B, 0, 1, dvi__yee_last_boxes(y), dvi__yee_begin(y, y->divided) - 1);
+}
+
+void dvi__yee_pass_edges(const dvi__yee *y)
+{
+  if (y->divided < 0) return;
+  pass(y, DVI__YEE_E, 0, -1, dvi__yee_begin(y, y->divided), y->own[y->divided][1]);
+}
+
+void dvi__yee_pass_faces_back(const dvi__yee *y)
+{
+  if (y->divided < 0) return;
+  pass(y, DVI__YEE_B, 1, -1, dvi__yee_begin(y, y->divided), y->own[y->divided][1]);
+}
+
+/* ---- other numbers of planes ---- */
+
+double *dvi__yee_plane_sent(const dvi__yee *y)
+{
+  return y->planes->sent;
+}
+
+size_t dvi__yee_at_plane(const dvi__yee *y, int component, int copy, const int *place)
+{
+  const size_t number = (size_t)(3 * copy + component % 3),
+               row = y->divided == 2 ? dvi__yee_row_along(y, 1, place[1]) : 0;
+  return (number * y->planes->across + row) * y->width + DVI__YEE_LEFT + (size_t)place[0];
+}
+
+const double *dvi__yee_pass_plane(const dvi__yee *y, int is_moment)
+{
+  const size_t count = count_numbers(y) / (size_t)y->copies;
+  double *received = is_moment ? y->planes->moment : y->planes->received;
+  if (send(y, 1, count, received) && is_moment) turn(y, 1, count, received);
+  return received;
+}

@@ -1,0 +1,51 @@
+/* The planes of a grid that is divided among processes, and sums over all of them. */
+#ifndef DVI_FIELD_YEE_RANKS_H
+#define DVI_FIELD_YEE_RANKS_H
+#include "field/yee/yee.h"
+#include "num/accumulator.h"
+
+/* Find the own places of this process, from the axes. */
+dvi_status dvi__yee_divide(const dvi_yee_terms *terms, dvi__yee *yee);
+/* Make room for planes that go to other processes, or come from them. Nothing on a whole grid. */
+dvi_status dvi__yee_make_planes(const dvi_yee_terms *terms, dvi__yee *yee);
+void dvi__yee_clear_planes(dvi__yee *yee);
+/* The next functions are called on all processes, and do nothing on a whole grid. After one has
+ * failed, the others do nothing, and dvi__yee_check_ranks tells so, until processes begin anew. */
+dvi_status dvi__yee_check_ranks(const dvi__yee *yee);
+void dvi__yee_begin_ranks(const dvi__yee *yee);
+/* Give B of the last plane of boxes to the process after this one, and E of the first plane to the
+ * one before, which a step needs there, of the components across the divided axis. */
+void dvi__yee_pass_faces(const dvi__yee *yee);
+void dvi__yee_pass_edges(const dvi__yee *yee);
+/* Give B along the divided axis of the first plane to the process before this one. */
+void dvi__yee_pass_faces_back(const dvi__yee *yee);
+/* Give numbers of a plane to the process after this one. They are put to dvi__yee_plane_sent, with
+ * room for the copies of all components of a form. Those of the process before are returned: fields
+ * of a moment, which have a phase and last, or others, which last until the next call. */
+double *dvi__yee_plane_sent(const dvi__yee *yee);
+const double *dvi__yee_pass_plane(const dvi__yee *yee, int is_moment);
+/* Give the place of a component, of a copy, in such a plane. */
+size_t dvi__yee_at_plane(const dvi__yee *yee, int component, int copy, const int *place);
+/* Fail on all processes if one of them has failed. */
+dvi_status dvi__yee_agree(const dvi__yee *yee, dvi_status status);
+/* Give the sum of all processes, rounded once, and replace numbers by the largest of all. */
+double dvi__yee_sum_of_all(const dvi__yee *yee, dvi__accumulator *sum);
+void dvi__yee_largest_of_all(const dvi__yee *yee, int count, double *number);
+
+/* A sum of many terms, some of which wait until they are added at once. */
+typedef struct dvi__yee_sum {
+  dvi__accumulator sum;
+  int count;
+  double term[DVI__SUM_TERMS];
+} dvi__yee_sum;
+
+static inline void dvi__yee_add(dvi__yee_sum *s, double term)
+{
+  s->term[s->count++] = term;
+  if (s->count < DVI__SUM_TERMS) return;
+  dvi__accumulate_terms(&s->sum, s->term);
+  s->count = 0;
+}
+double dvi__yee_sum_up(const dvi__yee *yee, dvi__yee_sum *sum);
+
+#endif

@@ -1,0 +1,461 @@
+/* Grids that are divided among processes: every bit of every step is that of one process, for
+ * random grids, ends, materials and sources, and so are the step, energies, charges, probes and
+ * fluxes. */
+#include <dvi/yee.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "support/field/ranks.h"
+#include "support/meshes.h"
+#include "support/suite.h"
+#include "support/waves/boxes.h"
+
+enum { STEPS = 6, OBSERVED = 9, PROCESSES = 5, TRIALS = 30, FORMS = 2 };
+
+/* ---- random grids ---- */
+
+static int pulse(double t, double *value, void *user)
+{
+  (void)user;
+  *value = exp(-(t - 1) * (t - 1));
+  return 0;
+}
+
+static int swirl(const double *x, double *value, void *user)
+{
+  (void)user;
+  value[0] = x[1] * x[1];
+  value[1] = 1 - x[0];
+  value[2] = x[0] * x[1];
+  return 0;
+}
+
+/* Inside of the boxes of waves. */
+static int ball(const double *x, double *value, void *user)
+{
+  (void)user;
+  const double dx = x[0] - 2.4, dy = x[1] - 2.5;
+  *value = dx * dx + dy * dy < 0.3 ? 2.5 : 1;
+  return 0;
+}
+
+static int loss(const double *x, double *value, void *user)
+{
+  (void)user;
+  *value = x[1] > 2.1 && x[1] < 2.7 && x[0] < 2.7 && x[0] > 2.1 ? 0.3 : 0;
+  return 0;
+}
+
+/* Terms, and what they point to. */
+typedef struct grid {
+  dvi_yee_terms terms;
+  double node[3][16];
+  double *cell[3];
+  dvi_yee_current current;
+  dvi_yee_dipole dipole[2];
+  dvi_yee_wave wave;
+  dvi_yee_probe probe[3];
+  dvi_yee_flux flux[2];
+} grid;
+
+static int chosen(unsigned long long *seed, int count)
+{
+  return (int)(count * random_number(seed));
+}
+
+static void choose_axis(grid *g, int l, unsigned long long *seed)
+{
+  static const dvi_yee_boundary once[] = {DVI_YEE_PEC, DVI_YEE_PMC, DVI_YEE_ABSORBING,
+                                          DVI_YEE_CPML};
+  dvi_yee_axis *a = &g->terms.axis[l];
+  const int is_last = l == g->terms.axes - 1, around = chosen(seed, 3), is_graded = chosen(seed, 2);
+  *a = (dvi_yee_axis){.cells = is_last ? 10 + chosen(seed, 4) : 5, .phase = 0.4 + l};
+  a->upper = a->cells;
+  for (int e = 0; e < 2; e++) {
+    a->end[e] = (dvi_yee_end){.layers = 1 + is_last * (1 + chosen(seed, 2)), .kappa = 2};
+    a->end[e].kind = around == 1   ? DVI_YEE_PERIODIC
+                     : around == 2 ? DVI_YEE_BLOCH
+                                   : once[chosen(seed, 4)];
+  }
+  for (int i = 0; i <= a->cells; i++) g->node[l][i] = i;
+  for (int i = 1; i < a->cells; i++) g->node[l][i] += 0.2 * random_number(seed);
+  if (is_graded) a->node = g->node[l];
+}
+
+static void choose_media(grid *g, int kind, unsigned long long *seed)
+{
+  dvi_yee_terms *t = &g->terms;
+  size_t cells = 1;
+  for (int l = 0; l < t->axes; l++) cells *= (size_t)t->axis[l].cells;
+  for (int m = 0; m < 3; m++) {
+    g->cell[m] = calloc(cells, sizeof(double));
+    for (size_t i = 0; i < cells; i++) g->cell[m][i] = 0.5 * (m < 2) + random_number(seed);
+  }
+  if (kind == 1) t->eps.at = ball;
+  if (kind == 2) t->eps.cell = g->cell[0], t->mu.cell = g->cell[1];
+  if (kind == 3) t->sigma.at = loss, t->mu.at = ball;
+  if (kind == 4) t->eps.at = ball, t->mu.cell = g->cell[1], t->sigma.cell = g->cell[2];
+}
+
+static int has_phase(const dvi_yee_terms *t)
+{
+  int found = 0;
+  for (int l = 0; l < t->axes; l++) found |= t->axis[l].end[0].kind == DVI_YEE_BLOCH;
+  return found;
+}
+
+/* Sources keep away from the ends. Waves are polarized along the last component that E has. */
+static void choose_sources(grid *g, int kind, unsigned long long *seed)
+{
+  dvi_yee_terms *t = &g->terms;
+  const double high = t->axis[t->axes - 1].cells - 3.1;
+  g->current = (dvi_yee_current){.density = swirl, .signal = pulse};
+  for (int i = 0; i < 2; i++) {
+    g->dipole[i] = (dvi_yee_dipole){
+        .at = {2.2, 2.6, 3}, .along = {1, 2, 3}, .signal = pulse, .is_moment = i};
+    g->dipole[i].at[t->axes - 1] = 2.2 + (high - 2.2) * random_number(seed);
+  }
+  g->wave = (dvi_yee_wave){.lower = {2, 2, 2}, .upper = {3, 3, 3}, .signal = pulse};
+  g->wave.lower[t->axes - 1] = 3;
+  g->wave.upper[t->axes - 1] = t->axis[t->axes - 1].cells - 3;
+  g->wave.direction[t->axes - 1] = 1;
+  g->wave.direction[0] = chosen(seed, 2);
+  g->wave.polarization[1 + (t->degree == 0)] = 1;
+  if (t->axes == 2 && t->degree == 1) g->wave.direction[0] = 1, g->wave.direction[1] = 0;
+  t->dipole = g->dipole, t->dipoles = 2;
+  if (!has_phase(t)) t->current = &g->current, t->currents = 1;
+  if (!has_phase(t) && kind == 0) t->wave = &g->wave, t->waves = 1;
+}
+
+static void choose_observables(grid *g)
+{
+  const int last = g->terms.axes - 1;
+  const double end = g->terms.axis[last].cells;
+  g->probe[0] = (dvi_yee_probe){"e", DVI_FORM_E, {1.3, 2.2, 3.1}, {1, -1, 0.3}};
+  g->probe[1] = (dvi_yee_probe){"b", DVI_FORM_B, {3.3, 1.2, 2.1}, {1, 1, 0.7}};
+  g->probe[2] = (dvi_yee_probe){"end", DVI_FORM_E, {3.3, 1.2, 2.1}, {1, 1, 0.7}};
+  g->probe[1].at[last] = end - 0.4;
+  g->probe[2].at[last] = end;
+  g->flux[0] = (dvi_yee_flux){"box", {1, 1, 2}, {4, 4, 4}};
+  g->flux[0].upper[last] = end - 1;
+  g->flux[1] = (dvi_yee_flux){"plane", {0, 0, 0}, {5, 5, 5}};
+  g->flux[1].lower[last] = g->flux[1].upper[last] = 4;
+  g->terms.probe = g->probe, g->terms.probes = 3;
+  g->terms.flux = g->flux, g->terms.fluxes = 2;
+}
+
+static grid *make_grid(unsigned long long seed)
+{
+  grid *g = calloc(1, sizeof *g);
+  const int shape = chosen(&seed, 4), media = (int)(seed % 5);
+  g->terms = (dvi_yee_terms){.size = sizeof g->terms,
+                             .axes = shape < 2 ? 3 : 2,
+                             .degree = shape < 3,
+                             .threads = 1 + chosen(&seed, 2)};
+  for (int l = 0; l < g->terms.axes; l++) choose_axis(g, l, &seed);
+  choose_media(g, media, &seed);
+  choose_sources(g, media, &seed);
+  choose_observables(g);
+  return g;
+}
+
+static void free_grid(grid *g)
+{
+  for (int m = 0; m < 3; m++) free(g->cell[m]);
+  free(g);
+}
+
+/* ---- trials ---- */
+
+/* What one process has, and what differs where there are several. */
+typedef struct trial {
+  const grid *g;
+  dvi_status status;
+  int64_t size[FORMS], copies;
+  int *plane[FORMS];          /* of each cell along the axis that is divided */
+  double *start[FORMS];       /* with copies */
+  double *form[STEPS][FORMS]; /* with copies */
+  double seen[STEPS][OBSERVED], step;
+  int stop; /* the step behind which the state is saved and loaded */
+  int64_t wrong[PROCESSES];
+  char sentence[PROCESSES][256];
+} trial;
+
+static void observe(const dvi_march *march, double *seen)
+{
+  for (int i = 0; dvi_march_observable(march, i) != NULL; i++)
+    (void)dvi_march_observe(march, i, seen + i);
+}
+
+static double step_of(const dvi_march *march)
+{
+  dvi_march_facts facts;
+  dvi_march_facts_of(march, &facts);
+  return facts.step;
+}
+
+/* Find the planes of all cells. */
+static int *planes_of(const dvi_yee_terms *terms, dvi_march_form form, int64_t size)
+{
+  int *plane = malloc((size_t)size * sizeof *plane), i[3] = {0, 0, 0};
+  for (int c = 0; c < 3; c++)
+    for (i[2] = 0; i[2] <= (terms->axes > 2 ? terms->axis[2].cells : 0); i[2]++)
+      for (i[1] = 0; i[1] <= terms->axis[1].cells; i[1]++)
+        for (i[0] = 0; i[0] <= terms->axis[0].cells; i[0]++) {
+          const int64_t number = dvi_yee_place(terms, form, c, i);
+          if (number >= 0) plane[number] = i[terms->axes - 1];
+        }
+  return plane;
+}
+
+/* Half of the trials start with fields. */
+static void start(dvi_march *march, double *const *values, int is_given)
+{
+  const dvi_march_state state = {
+      .size = sizeof state, .E = is_given ? values[0] : NULL, .B = is_given ? values[1] : NULL};
+  (void)dvi_march_start(march, &state);
+}
+
+static void run_whole(trial *t, int is_given)
+{
+  dvi_march *march = NULL;
+  t->status = dvi_yee_create(&t->g->terms, &march);
+  ck_assert_msg(t->status == DVI_OK, "%s", dvi_last_error());
+  for (int f = 0; f < FORMS; f++) {
+    const dvi_march_form form = f == 0 ? DVI_FORM_E : DVI_FORM_B;
+    t->size[f] = dvi_yee_size(&t->g->terms, form);
+    t->copies = dvi_march_size(march, form) / t->size[f];
+    t->plane[f] = planes_of(&t->g->terms, form, t->size[f]);
+    t->start[f] = random_values(t->size[f] * t->copies, 7 + (unsigned)f);
+  }
+  start(march, t->start, is_given);
+  t->step = step_of(march);
+  for (int s = 0; s < STEPS; s++) {
+    ck_assert(dvi_march_advance(march, (s + 0.3 * (s % 3)) * t->step) == DVI_OK);
+    for (int f = 0; f < FORMS; f++)
+      t->form[s][f] = sample_march(march, f == 0 ? DVI_FORM_E : DVI_FORM_B);
+    observe(march, t->seen[s]);
+  }
+  dvi_march_destroy(&march);
+}
+
+/* Give the numbers in the whole grid of the cells of a process. */
+static int64_t *numbers_of(const trial *t, const dvi_yee_ranks *r, int f, int64_t *count)
+{
+  const int cells = t->g->terms.axis[t->g->terms.axes - 1].cells,
+            first = cells * r->rank / r->count,
+            last = r->rank == r->count - 1 ? cells + 1 : cells * (r->rank + 1) / r->count;
+  int64_t *number = malloc((size_t)t->size[f] * sizeof *number);
+  *count = 0;
+  for (int64_t i = 0; i < t->size[f]; i++)
+    if (t->plane[f][i] >= first && t->plane[f][i] < last) number[(*count)++] = i;
+  return number;
+}
+
+static int64_t compare(const trial *t, const dvi_march *march, int f, int s, const int64_t *number,
+                       int64_t count)
+{
+  double *values = sample_march(march, f == 0 ? DVI_FORM_E : DVI_FORM_B);
+  int64_t wrong = 0;
+  for (int64_t i = 0; i < count * t->copies; i++)
+    wrong += memcmp(values + i, t->form[s][f] + i / count * t->size[f] + number[i % count],
+                    sizeof *values) != 0;
+  free(values);
+  return wrong;
+}
+
+/* Put the state of a process to a new march. */
+static void load_anew(const dvi_yee_terms *terms, dvi_march **march)
+{
+  dvi_march *other = NULL;
+  size_t size = 0;
+  (void)dvi_march_save_memory(*march, NULL, 0, &size);
+  void *bytes = malloc(size);
+  if (dvi_march_save_memory(*march, bytes, size, &size) == DVI_OK &&
+      dvi_yee_create(terms, &other) == DVI_OK &&
+      dvi_march_load_memory(other, bytes, size) == DVI_OK) {
+    dvi_march_destroy(march);
+    *march = other;
+  }
+  free(bytes);
+}
+
+static void run_rank(const dvi_yee_ranks *ranks, void *user)
+{
+  trial *t = user;
+  dvi_yee_terms terms = t->g->terms;
+  dvi_march *march = NULL;
+  int64_t *number[FORMS], count[FORMS], *wrong = &t->wrong[ranks->rank];
+  double *own[FORMS], seen[OBSERVED] = {0};
+  terms.ranks = ranks;
+  if (dvi_yee_create(&terms, &march) != DVI_OK) {
+    *wrong = -1;
+    (void)strncpy(t->sentence[ranks->rank], dvi_last_error(), 255);
+    return;
+  }
+  *wrong += step_of(march) != t->step;
+  for (int f = 0; f < FORMS; f++) {
+    number[f] = numbers_of(t, ranks, f, &count[f]);
+    own[f] = malloc((size_t)(count[f] * t->copies) * sizeof(double));
+    *wrong += dvi_march_size(march, f == 0 ? DVI_FORM_E : DVI_FORM_B) != count[f] * t->copies;
+    for (int64_t i = 0; i < count[f] * t->copies; i++)
+      own[f][i] = t->start[f][i / count[f] * t->size[f] + number[f][i % count[f]]];
+  }
+  start(march, own, t->stop % 2);
+  for (int s = 0; s < STEPS; s++) {
+    *wrong += dvi_march_advance(march, (s + 0.3 * (s % 3)) * t->step) != DVI_OK;
+    if (s == t->stop) load_anew(&terms, &march);
+    for (int f = 0; f < FORMS; f++) *wrong += compare(t, march, f, s, number[f], count[f]);
+    observe(march, seen);
+    for (int i = 0; i < OBSERVED; i++)
+      if (memcmp(seen + i, t->seen[s] + i, sizeof *seen) != 0) {
+        ++*wrong;
+        (void)snprintf(t->sentence[ranks->rank], 255, "step %d %s %.17g %.17g", s,
+                       dvi_march_observable(march, i), seen[i], t->seen[s][i]);
+      }
+  }
+  for (int f = 0; f < FORMS; f++) free(number[f]), free(own[f]);
+  dvi_march_destroy(&march);
+}
+
+START_TEST(values_have_the_bits_of_one_process)
+{
+  grid *g = make_grid(1000 + (unsigned)_i);
+  trial t = {.g = g, .stop = _i % STEPS};
+  run_whole(&t, t.stop % 2);
+  for (int count = 1 + _i % 3; count <= PROCESSES; count += 3) {
+    memset(t.wrong, 0, sizeof t.wrong);
+    run_box_ranks(count, run_rank, &t);
+    for (int r = 0; r < count; r++)
+      ck_assert_msg(t.wrong[r] == 0, "process %d of %d: %lld: %s", r, count, (long long)t.wrong[r],
+                    t.sentence[r]);
+  }
+  for (int f = 0; f < FORMS; f++) {
+    free(t.plane[f]), free(t.start[f]);
+    for (int s = 0; s < STEPS; s++) free(t.form[s][f]);
+  }
+  free_grid(g);
+}
+END_TEST
+
+/* ---- refusals ---- */
+
+static int none(int count, double *number, void *user)
+{
+  (void)count, (void)number, (void)user;
+  return 0;
+}
+
+static int none_of(int count, int64_t *number, void *user)
+{
+  (void)count, (void)number, (void)user;
+  return 0;
+}
+
+/* A pass of which the calls fail from a certain one on. */
+static int failing(int way, int around, int64_t count, const double *sent, double *received,
+                   void *user)
+{
+  int *left = user;
+  (void)way, (void)around, (void)count, (void)sent, (void)received;
+  return --*left < 0 ? 17 : 0;
+}
+
+static const dvi_yee_terms small = {
+    .size = sizeof small, .axes = 2, .degree = 1, .axis = {{.cells = 3}, {.cells = 5}}};
+
+static void refuse(const dvi_yee_terms *terms, const dvi_yee_ranks *ranks, dvi_status status,
+                   const char *words)
+{
+  dvi_yee_terms divided = *terms;
+  dvi_march *march;
+  divided.ranks = ranks;
+  ck_assert_int_eq(dvi_yee_create(&divided, &march), status);
+  ck_assert_ptr_null(march);
+  check_words(words);
+}
+
+START_TEST(bad_divisions_are_refused)
+{
+  const dvi_yee_terms line = {.size = sizeof line, .axes = 1, .axis = {{.cells = 9}}};
+  const dvi_yee_ranks good = {
+      .size = sizeof good, .count = 2, .pass = failing, .sum = none_of, .largest = none};
+  dvi_yee_ranks ranks = good;
+  ranks.size = 1;
+  refuse(&small, &ranks, DVI_BAD_ARGUMENT, "yee: set ranks.size");
+  ranks = good, ranks.rank = 2;
+  refuse(&small, &ranks, DVI_BAD_ARGUMENT, "yee: there is no process 2 of 2");
+  ranks = good, ranks.pass = NULL;
+  refuse(&small, &ranks, DVI_BAD_ARGUMENT, "by which processes speak are not all given");
+  ranks = good, ranks.count = 3;
+  refuse(&small, &ranks, DVI_BAD_ARGUMENT, "yee: axis y has 5 boxes, and 3 processes need 2 each");
+  refuse(&line, &good, DVI_UNSUPPORTED, "yee: a grid of one axis cannot be divided");
+}
+END_TEST
+
+START_TEST(one_process_needs_no_other)
+{
+  const dvi_yee_ranks ranks = {
+      .size = sizeof ranks, .count = 1, .pass = failing, .sum = none_of, .largest = none};
+  dvi_yee_terms terms = small;
+  const int first[] = {0, 0}, last[] = {2, 5};
+  terms.ranks = &ranks;
+  ck_assert_int_eq(dvi_yee_size(&terms, DVI_FORM_E), dvi_yee_size(&small, DVI_FORM_E));
+  ck_assert_int_eq(dvi_yee_place(&terms, DVI_FORM_E, 0, first), 0);
+  ck_assert_int_eq(dvi_yee_place(&terms, DVI_FORM_E, 0, last), 17);
+}
+END_TEST
+
+START_TEST(places_are_those_of_the_whole_grid)
+{
+  dvi_yee_ranks ranks = {
+      .size = sizeof ranks, .count = 2, .pass = failing, .sum = none_of, .largest = none};
+  dvi_yee_terms terms = small;
+  const int below[] = {1, 1}, above[] = {1, 2};
+  terms.ranks = &ranks;
+  ck_assert_int_eq(dvi_yee_size(&terms, DVI_FORM_E), 2 * 3 + 2 * 4);
+  ck_assert_int_eq(dvi_yee_place(&terms, DVI_FORM_E, 1, below), 2 * 3 + 4 + 1);
+  ck_assert_int_eq(dvi_yee_place(&terms, DVI_FORM_E, 1, above), -1);
+  ranks.rank = 1;
+  ck_assert_int_eq(dvi_yee_size(&terms, DVI_FORM_E), 4 * 3 + 3 * 4);
+  ck_assert_int_eq(dvi_yee_place(&terms, DVI_FORM_E, 1, below), -1);
+  ck_assert_int_eq(dvi_yee_place(&terms, DVI_FORM_E, 1, above), 4 * 3 + 1);
+}
+END_TEST
+
+/* A march that lost the others says so until it is started again. */
+START_TEST(a_failure_to_speak_is_told_until_a_start)
+{
+  int left = 4;
+  const dvi_yee_ranks ranks = {.size = sizeof ranks,
+                               .count = 2,
+                               .pass = failing,
+                               .sum = none_of,
+                               .largest = none,
+                               .user = &left};
+  dvi_yee_terms terms = small;
+  double value;
+  terms.ranks = &ranks;
+  dvi_march *march = box_march(&terms);
+  start_boxes(march, NULL, NULL);
+  ck_assert_int_eq(dvi_march_advance(march, 1), DVI_CALLBACK_FAILED);
+  check_words("yee: process 0 of 2 could not speak with the others: code 17");
+  left = 1000;
+  ck_assert_int_eq(dvi_march_advance(march, 1), DVI_CALLBACK_FAILED);
+  ck_assert_int_eq(dvi_march_observe(march, 0, &value), DVI_CALLBACK_FAILED);
+  start_boxes(march, NULL, NULL);
+  ck_assert_int_eq(dvi_march_advance(march, 1), DVI_OK);
+  dvi_march_destroy(&march);
+}
+END_TEST
+
+SUITE(yee_ranks)
+{
+  tcase_add_loop_test(tests, values_have_the_bits_of_one_process, 0, TRIALS);
+  tcase_add_test(tests, bad_divisions_are_refused);
+  tcase_add_test(tests, one_process_needs_no_other);
+  tcase_add_test(tests, places_are_those_of_the_whole_grid);
+  tcase_add_test(tests, a_failure_to_speak_is_told_until_a_start);
+}

@@ -1,0 +1,134 @@
+/* Fields on the shares of MPI's processes have every bit of the whole mesh, which each process
+ * advances, too. Usage: mpirun -np N shares */
+#include <dvi/petsc.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "support/field/generated.h"
+#include "support/meshes.h"
+#include "support/shares/shares.h"
+
+/* PETSc includes complex.h, whose I is no name for a parameter: libdvi's headers come first. */
+#include <petscsys.h>
+
+static int rank, ranks, failures;
+
+static void expect(int holds, const char *what, const char *partitioner)
+{
+  int all = holds;
+  (void)MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
+  if (all) return;
+  failures++;
+  if (!holds)
+    (void)fprintf(stderr, "process %d of %d, %s: %s (%s)\n", rank, ranks, partitioner, what,
+                  dvi_last_error());
+}
+
+/* All cells have one owner, and the ghosts are the other ones. */
+static int64_t count_wrong(const dvi_division_facts *facts, const dvi_mesh *share,
+                           const dvi_mesh *mesh)
+{
+  int64_t wrong = 0;
+  for (int k = 0; k <= dvi_mesh_dimension(mesh); k++) {
+    int64_t owned = facts->owned[k];
+    (void)MPI_Allreduce(MPI_IN_PLACE, &owned, 1, MPI_INT64_T, MPI_SUM, MPI_COMM_WORLD);
+    wrong += owned != dvi_mesh_count(mesh, k);
+    wrong += facts->owned[k] + facts->ghosts[k] != dvi_mesh_count(share, k);
+    wrong += facts->bytes_in[k] != 8 * facts->ghosts[k];
+  }
+  return wrong + (facts->rank != rank) + (facts->ranks != ranks);
+}
+
+static void check_division(const dvi_mesh *mesh, const whole_run *whole, const char *partitioner)
+{
+  const dvi_division_options options = {.size = sizeof options, .partitioner = partitioner};
+  dvi_mesh *share = NULL;
+  dvi_division *division = NULL;
+  dvi_division_facts facts;
+  const dvi_status status = dvi_mesh_divide(mesh, &options, &share, &division);
+  expect(status == DVI_OK, "no division", partitioner);
+  if (status != DVI_OK) return;
+  dvi_division_facts_of(division, &facts);
+  expect(count_wrong(&facts, share, mesh) == 0, "wrong facts", partitioner);
+  expect(strcmp(facts.partitioner, partitioner) == 0, "wrong name", partitioner);
+  expect(run_share(share, rank, whole) == 0, "other bits", partitioner);
+  dvi_mesh_destroy(&share);
+  dvi_division_destroy(&division);
+}
+
+/* The mesh is destroyed. */
+static void check_field(dvi_mesh *mesh, dvi_field *(*make)(const dvi_mesh *mesh))
+{
+  whole_run whole = {.make = make};
+  run_whole(mesh, &whole);
+  check_division(mesh, &whole, "blocks");
+  check_division(mesh, &whole, "ptscotch");
+  whole_run_clear(&whole);
+  dvi_mesh_destroy(&mesh);
+}
+
+static void check_fields(void)
+{
+  const dvi_generator_options bcc = {.cells = {3, 3, 3}, .extent = {1, 1, 1}},
+                              box = {.cells = {5, 4, 3}, .grading = {1.2, 1, 1.4}},
+                              line = {.cells = {40}, .grading = {1.3}};
+  const double period[] = {1, 1, 1};
+  check_field(with_core_and_exit(generated("bcc-torus", bcc), period), lossy_field);
+  check_field(with_core_and_exit(staggered_mesh(9, 10), NULL), lossy_field);
+  check_field(equilateral_torus(6, 8), cavity_field);
+  check_field(generated("box", box), cavity_field);
+  check_field(with_core_and_exit(generated("box", box), NULL), lossy_field);
+  check_field(with_core_and_exit(generated("interval", line), NULL), lossy_field);
+  check_field(with_core_and_exit(staggered_mesh(8, 9), NULL), driven_wave);
+}
+
+/* The status and a word of its sentence are those of all processes. */
+static void refuse(const dvi_mesh *mesh, const dvi_division_options *options, dvi_status status,
+                   const char *word)
+{
+  dvi_mesh *share;
+  dvi_division *division;
+  const int is_refused = dvi_mesh_divide(mesh, options, &share, &division) == status &&
+                         share == NULL && division == NULL;
+  expect(is_refused && strstr(dvi_last_error(), word) != NULL, word, "refusal");
+}
+
+static void check_refusals(void)
+{
+  const dvi_generator_options line = {.cells = {3}}, other = {.cells = {3 + rank}};
+  dvi_mesh *mesh = generated("interval", line), *mine = generated("interval", other);
+  dvi_division_options options = {.size = sizeof options, .partitioner = "nobody"};
+  if (ranks > 1) refuse(mine, NULL, DVI_BAD_ARGUMENT, "not the same");
+  if (ranks > 3) refuse(mesh, NULL, DVI_BAD_ARGUMENT, "cannot share 3 cells");
+  if (ranks > 1 && ranks < 4) refuse(mesh, &options, DVI_BAD_OPTION, "\"nobody\"");
+  options.partitioner = "a name that is longer than any partitioner's";
+  refuse(mesh, &options, DVI_BAD_OPTION, "longer");
+  options.size = 1;
+  refuse(mesh, &options, DVI_BAD_ARGUMENT, "options.size");
+  dvi_mesh_destroy(&mesh);
+  dvi_mesh_destroy(&mine);
+}
+
+/* Return whether a division before PETSc's start is refused. */
+static int is_too_early(void)
+{
+  const dvi_generator_options line = {.cells = {3}};
+  dvi_mesh *mesh = generated("interval", line), *share;
+  dvi_division *division;
+  const dvi_status status = dvi_mesh_divide(mesh, NULL, &share, &division);
+  dvi_mesh_destroy(&mesh);
+  return status == DVI_BAD_ARGUMENT && strstr(dvi_last_error(), "start PETSc") != NULL;
+}
+
+int main(int argc, char **argv)
+{
+  const int early = is_too_early();
+  if (PetscInitialize(&argc, &argv, NULL, NULL) != 0) return 1;
+  (void)MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  (void)MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+  expect(early, "divided before PETSc's start", "start");
+  check_fields();
+  check_refusals();
+  (void)PetscFinalize();
+  return failures > 0;
+}
