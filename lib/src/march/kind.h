@@ -36,8 +36,8 @@ typedef struct dvi__march_kind {
 /* Make a march of a state, which the march owns then, after a failure, too. */
 dvi_status dvi__march_wrap(const dvi__march_kind *kind, void *self, dvi_march **march);
 
-/* Agree with the processes that march together, if there are any, whether all have succeeded so far.
- * What may fail on one of them alone comes before. */
+/* Agree with the processes that march together, if there are any, whether all have succeeded so
+ * far. What may fail on one of them alone comes before. */
 dvi_status dvi__march_agree(const dvi_march *march, dvi_status status);
 
 /* Shorten a step so that a whole number of steps makes a span, unless the span is 0. A step that

@@ -263,7 +263,7 @@ dvi_status dvi_march_record(dvi_march *march, const dvi_march_record_options *op
   march_record r = {.march = march, .options = options, .start = dvi_march_time(march)};
   const dvi_status status = dvi__march_agree(march, prepare(&r));
   *recording = r.recording;
-  if (status != DVI_OK) dvi_recording_destroy(recording);
-  DVI_TRY(status);
-  return run_recorded(&r);
+  if (status == DVI_OK && r.recording != NULL) return run_recorded(&r);
+  dvi_recording_destroy(recording);
+  return status;
 }

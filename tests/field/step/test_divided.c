@@ -560,8 +560,7 @@ static void check_trial(unsigned long long seed)
 
 START_TEST(all_divisions_have_the_bytes_of_the_whole_mesh)
 {
-  /* among them one that has a damping, but no unknown on one process, and one whose shares have edges
-   * in an absorbing wall */
+  /* One has damping, but a process without unknowns, one has shares that end in a wall. */
   const unsigned long long special[] = {406, 634};
   for (int i = 0; i < 2; i++) check_trial(special[i]);
   for (int i = 0; i < repeats(20); i++) check_trial((unsigned long long)i);
