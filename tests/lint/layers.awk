@@ -39,7 +39,7 @@ BEGIN {
   sees["method/split"] = sees["method"] " method method/element space step/split"
   sees["march"] = "core"
   sees["integrator"] = "core march num space solve system method"
-  sees["record"] = "core num system method integrator"
+  sees["record"] = "core march num system method integrator"
   sees["boundary"] = "core num solve system step/element method/element"
   sees["sensitivity"] = "core num system step/element method/element"
   sees["diagnostics"] = "core num system"

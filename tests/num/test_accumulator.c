@@ -101,8 +101,18 @@ START_TEST(no_division_changes_a_bit)
 }
 END_TEST
 
+START_TEST(a_term_that_is_no_number_is_not_lost_among_zeros)
+{
+  const double x[] = {0, NAN, 0}, y[] = {1, 1, 1};
+  dvi__accumulator sum = {.terms = 0};
+  dvi__accumulate_products(&sum, 3, x, y, NULL);
+  ck_assert(isnan(dvi__accumulator_value(&sum)));
+}
+END_TEST
+
 SUITE(accumulator)
 {
+  tcase_add_test(tests, a_term_that_is_no_number_is_not_lost_among_zeros);
   tcase_add_test(tests, known_sums_are_rounded_once);
   tcase_add_test(tests, no_order_changes_a_bit);
   tcase_add_test(tests, no_division_changes_a_bit);

@@ -202,7 +202,7 @@ dvi_status dvi_march_record(dvi_march *march, const dvi_march_record_options *op
                             dvi_recording **recording);
 
 /** Write the state to a file. A march that is made in the same way and loads it goes on with the
- *  same bits.
+ *  same bits. On shares of a mesh the state is that of the whole mesh (docs/fields/shares.md).
  *
  *  @retval DVI_IO_ERROR   the file could not be written. An old one stays
  *  @retval DVI_NO_MEMORY  there is no memory for the file */

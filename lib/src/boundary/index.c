@@ -7,7 +7,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "num/inertia.h"
+#include "boundary/inertia.h"
 #include "boundary/path_struct.h"
 
 /* Largest block of elimination, which has one step's unknowns. Larger blocks would take far longer

@@ -52,9 +52,7 @@ static dvi_status check_started(const dvi_march *march)
                    "a saved state");
 }
 
-/* Agree with the other processes that march together, if there are any, whether all have succeeded
- * so far. What is allowed to fail on one of them alone comes before. */
-static dvi_status agree(const dvi_march *march, dvi_status status)
+dvi_status dvi__march_agree(const dvi_march *march, dvi_status status)
 {
   return march->kind->agree != NULL ? march->kind->agree(march->self, status) : status;
 }
@@ -89,7 +87,7 @@ dvi_status dvi_march_start(dvi_march *march, const dvi_march_state *state)
 {
   if (march == NULL || state == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "march: a march and a start are needed");
-  DVI_TRY(agree(march, check_state(march, state)));
+  DVI_TRY(dvi__march_agree(march, check_state(march, state)));
   DVI_TRY(march->kind->start(march->self, state));
   march->started = 1;
   return DVI_OK;
@@ -145,7 +143,7 @@ dvi_status dvi_march_sample(const dvi_march *march, dvi_march_form form, int64_t
   if (cell == NULL) count = size;
   dvi_status status = march->kind->sample(march->self, form, count, cell, values);
   if (status == DVI_OK) status = check_values(march, form, count, cell, values);
-  return cell == NULL ? agree(march, status) : status;
+  return cell == NULL ? dvi__march_agree(march, status) : status;
 }
 
 const char *dvi_march_observable(const dvi_march *march, int i)
@@ -179,8 +177,8 @@ void dvi_march_facts_of(const dvi_march *march, dvi_march_facts *facts)
 
 /* ---- states in files and in memory ---- */
 
-/* Put the state together, on processes that do not keep it for the others alone. The caller releases
- * the bytes, after a failure, too. */
+/* Put the state together, on processes that do not keep it for the others alone. The caller
+ * releases the bytes, after a failure, too. */
 static dvi_status pack(const dvi_march *march, int keeps, dvi__sections_writer *writer)
 {
   *writer = (dvi__sections_writer){.bytes = NULL};
@@ -203,7 +201,7 @@ dvi_status dvi_march_save(const dvi_march *march, const char *path)
 {
   DVI_TRY(check_started(march));
   if (path == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "march: a file's name is needed");
-  return agree(march, write(march, path));
+  return dvi__march_agree(march, write(march, path));
 }
 
 dvi_status dvi_march_save_memory(const dvi_march *march, void *bytes, size_t capacity, size_t *size)
@@ -211,7 +209,7 @@ dvi_status dvi_march_save_memory(const dvi_march *march, void *bytes, size_t cap
   dvi__sections_writer writer;
   DVI_TRY(check_started(march));
   if (size == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "march: a place for the size is needed");
-  const dvi_status status = agree(march, pack(march, 1, &writer));
+  const dvi_status status = dvi__march_agree(march, pack(march, 1, &writer));
   const size_t needed = writer.size;
   if (status == DVI_OK) *size = needed;
   if (status == DVI_OK && bytes != NULL && needed <= capacity) memcpy(bytes, writer.bytes, needed);
@@ -224,7 +222,7 @@ dvi_status dvi_march_save_memory(const dvi_march *march, void *bytes, size_t cap
 /* Take the state of sections whose reading has this status. */
 static dvi_status take_state(dvi_march *march, dvi__sections *sections, dvi_status status)
 {
-  status = agree(march, status);
+  status = dvi__march_agree(march, status);
   if (status == DVI_OK) status = march->kind->load(march->self, sections);
   dvi__sections_clear(sections);
   if (status == DVI_OK) march->started = 1;

@@ -56,7 +56,7 @@ static inline void dvi__accumulate(dvi__accumulator *sum, double term)
   if (++sum->terms == DVI__CARRY_AFTER) dvi__accumulator_carry(sum);
 }
 
-/* Add DVI__SUM_TERMS terms, which are overwritten. This takes less time than one after the other. */
+/* Add DVI__SUM_TERMS terms, which are overwritten. It takes less time than one after the other. */
 void dvi__accumulate_terms(dvi__accumulator *sum, double *term);
 
 /* Add the products of n numbers, each rounded. `taken` [n] is not 0 for those that count. It is

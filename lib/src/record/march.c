@@ -7,6 +7,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "march/kind.h"
 #include "record/recording.h"
 
 enum { FORMS = 3, CANCEL_STEPS = 32 };
@@ -145,8 +146,9 @@ static dvi_status fill_form(const march_record *r, dvi_march_form form)
 {
   double *row = dvi__recording_row(r->recording, (dvi__row_part)(DVI__ROW_A + (int)form));
   if (row == NULL) return DVI_OK;
-  return dvi_march_sample(r->march, form, r->options->cell_count[form], r->options->cell[form],
-                          row);
+  const dvi_status status = dvi_march_sample(r->march, form, r->options->cell_count[form],
+                                             r->options->cell[form], row);
+  return dvi__march_agree(r->march, status);
 }
 
 static dvi_status fill_row(const march_record *r)
@@ -162,7 +164,7 @@ static dvi_status fill_row(const march_record *r)
 
 static dvi_status record_row(const march_record *r)
 {
-  dvi_status status = dvi__recording_open_rows(r->recording, 1);
+  dvi_status status = dvi__march_agree(r->march, dvi__recording_open_rows(r->recording, 1));
   if (status == DVI_OK) status = fill_row(r);
   if (status != DVI_OK)
     return dvi__fail_in(status, "record: no row at t = %.9g", dvi_march_time(r->march));
@@ -178,6 +180,15 @@ static double row_time(const march_record *r, int64_t row)
   return row < r->rows - 1 ? r->start + (double)row * r->options->every : r->options->t_end;
 }
 
+/* Tell whether the run is cancelled, on any of the processes that march together. */
+static int is_stopped(const march_record *r)
+{
+  const volatile int *cancel = r->options->cancel;
+  if (cancel == NULL) return 0;
+  const dvi_status status = *cancel ? dvi__fail(DVI_BAD_STATE, "record: cancelled") : DVI_OK;
+  return dvi__march_agree(r->march, status) != DVI_OK;
+}
+
 /* Advance to t, or until the run is cancelled. Only a run that can be is cut into pieces. */
 static dvi_status advance(const march_record *r, double t)
 {
@@ -185,7 +196,7 @@ static dvi_status advance(const march_record *r, double t)
   dvi_march_facts facts;
   dvi_march_facts_of(r->march, &facts);
   for (double now; (now = dvi_march_time(r->march)) < t;) {
-    if (cancel != NULL && *cancel) {
+    if (is_stopped(r)) {
       r->recording->report.end = DVI_RUN_CANCELLED;
       return DVI_OK;
     }
@@ -234,6 +245,14 @@ static dvi_status check_march(const dvi_march *march, const dvi_march_record_opt
                                   "first");
 }
 
+static dvi_status prepare(march_record *r)
+{
+  DVI_TRY(check_times(r));
+  DVI_TRY(count_rows(r));
+  DVI_TRY(choose_parts(r));
+  return make_recording(r);
+}
+
 dvi_status dvi_march_record(dvi_march *march, const dvi_march_record_options *options,
                             dvi_recording **recording)
 {
@@ -242,10 +261,9 @@ dvi_status dvi_march_record(dvi_march *march, const dvi_march_record_options *op
   *recording = NULL;
   DVI_TRY(check_march(march, options));
   march_record r = {.march = march, .options = options, .start = dvi_march_time(march)};
-  DVI_TRY(check_times(&r));
-  DVI_TRY(count_rows(&r));
-  DVI_TRY(choose_parts(&r));
-  DVI_TRY(make_recording(&r));
+  const dvi_status status = dvi__march_agree(march, prepare(&r));
   *recording = r.recording;
-  return run_recorded(&r);
+  if (status == DVI_OK && r.recording != NULL) return run_recorded(&r);
+  dvi_recording_destroy(recording);
+  return status;
 }

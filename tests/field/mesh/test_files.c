@@ -8,7 +8,7 @@
 #include "field/mesh/file/formats.h"
 #include "support/comma.h"
 #include "support/files.h"
-#include "support/field/mesh_files.h"
+#include "support/mesh_files.h"
 #include "support/suite.h"
 
 static dvi_status parse(const void *at, size_t size, const dvi_mesh_read_options *options,

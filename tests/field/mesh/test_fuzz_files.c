@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "field/mesh/file/formats.h"
-#include "support/field/mesh_files.h"
+#include "support/mesh_files.h"
 #include "support/scene/fuzz.h"
 
 static const char *const tokens[] = {"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n",

@@ -20,7 +20,7 @@ static const char *const part_name[] = {"core", "rim", "points", "boundary", "al
 
 /* What a march shows. */
 typedef struct shown {
-  dvi_status made, begun, advanced[STEPS], observed[STEPS][OBSERVED];
+  dvi_status made, begun, recorded, advanced[STEPS], observed[STEPS][OBSERVED];
   double step, value[STEPS][OBSERVED];
   size_t size;
   unsigned char *bytes[STEPS + 1];
@@ -396,6 +396,19 @@ static void show_step(const dvi_march *march, int s, shown *to)
   to->bytes[s] = state_of(march, &to->size);
 }
 
+static dvi_status record(dvi_march *march, double step)
+{
+  dvi_recording *recording = NULL;
+  const dvi_march_record_options options = {.size = sizeof options,
+                                            .t_end = (STEPS + 2) * step,
+                                            .every = step,
+                                            .parts = DVI_RECORD_T | DVI_RECORD_E |
+                                                     DVI_RECORD_OBSERVABLES};
+  const dvi_status status = dvi_march_record(march, &options, &recording);
+  dvi_recording_destroy(&recording);
+  return status;
+}
+
 /* Run the march, or what can be run. `failing` is not 0 on the process that fails. */
 static void run(const dvi_mesh *mesh, const trial *t, int rank, int failing, shown *to)
 {
@@ -410,6 +423,7 @@ static void run(const dvi_mesh *mesh, const trial *t, int rank, int failing, sho
       to->advanced[s] = dvi_march_advance(march, (s + 0.8) * to->step);
       show_step(march, s, to);
     }
+    to->recorded = record(march, to->step);
   }
   dvi_march_destroy(&march);
   dvi_field_destroy(&field);
@@ -439,6 +453,7 @@ static void compare(const shown *here, const shown *whole, char *wrong)
     DIFFERS("the march: %d, not %d: %.150s", here->begun, whole->begun, dvi_last_error());
   if (*wrong != '\0' || whole->made != DVI_OK || whole->begun != DVI_OK) return;
   if (here->step != whole->step) DIFFERS("the step %.17g, not %.17g", here->step, whole->step);
+  if (here->recorded != whole->recorded) DIFFERS("a recording: %d", here->recorded);
   for (int s = 0; s < STEPS && *wrong == '\0'; s++) {
     if (here->advanced[s] != whole->advanced[s]) DIFFERS("step %d: %d", s, here->advanced[s]);
     for (int i = 0; i < OBSERVED; i++)
@@ -502,6 +517,7 @@ static void run_failing(const dvi_mesh *share, int rank, void *user)
   dvi__fail_allocations_after(-1);
   t->end[rank] = here.made != DVI_OK ? here.made : here.begun;
   for (int s = 0; s < STEPS && t->end[rank] == DVI_OK; s++) t->end[rank] = here.advanced[s];
+  if (t->end[rank] == DVI_OK) t->end[rank] = here.recorded;
   forget(&here);
 }
 
@@ -544,7 +560,10 @@ static void check_trial(unsigned long long seed)
 
 START_TEST(all_divisions_have_the_bytes_of_the_whole_mesh)
 {
-  for (int i = 0; i < repeats(60); i++) check_trial((unsigned long long)i);
+  /* One has damping, but a process without unknowns, one has shares that end in a wall. */
+  const unsigned long long special[] = {406, 634};
+  for (int i = 0; i < 2; i++) check_trial(special[i]);
+  for (int i = 0; i < repeats(20); i++) check_trial((unsigned long long)i);
 }
 END_TEST
 

@@ -170,7 +170,7 @@ static dvi_status run(lanczos *s, double *bound)
   double *room = NULL;
   dvi_status status = prepare(s, &room);
   if (s->rows != NULL) status = s->rows->agree(s->rows->of, status);
-  if (status == DVI_OK) status = iterate(s, bound);
+  if (status == DVI_OK && room != NULL) status = iterate(s, bound);
   dvi__definite_clear(&s->inverse);
   dvi__release(room);
   return status;

@@ -109,10 +109,13 @@ static dvi_status take_cells(cut *c)
 {
   const dvi_mesh *mesh = c->whole;
   const int n = mesh->n, corners = dvi__corners(mesh->kind, n), *corner = mesh->corner[n];
+  int has_memory = 1;
   for (int k = 0; k <= n; k++) {
     c->taken[k] = DVI_NEW(char, mesh->count[k]);
-    if (c->taken[k] == NULL) return dvi__fail(DVI_NO_MEMORY, "mesh: no memory for a share");
+    has_memory = has_memory && c->taken[k] != NULL;
   }
+  if (!has_memory || c->taken[0] == NULL || c->taken[n] == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "mesh: no memory for a share");
   for (int64_t i = 0; i < mesh->count[n] * corners; i++)
     if (c->owner[i / corners] == c->ranks.rank) c->taken[0][corner[i]] = 1;
   for (int64_t i = 0; i < mesh->count[n] * corners; i++)
@@ -126,7 +129,7 @@ static dvi_status take_cells(cut *c)
 static int64_t count_marked(const char *marked, int64_t count)
 {
   int64_t sum = 0;
-  for (int64_t i = 0; i < count; i++) sum += marked[i];
+  for (int64_t i = 0; i < count && marked != NULL; i++) sum += marked[i];
   return sum;
 }
 
@@ -173,7 +176,7 @@ static dvi_status number_cells(const cut *c, dvi_mesh *made)
     if (share->number[k] == NULL || share->owner[k] == NULL)
       return dvi__fail(DVI_NO_MEMORY, "mesh: no memory for a share");
     int64_t kept = 0;
-    for (int64_t i = 0; i < c->whole->count[k]; i++) {
+    for (int64_t i = 0; i < c->whole->count[k] && c->taken[k] != NULL; i++) {
       if (!c->taken[k][i]) continue;
       share->number[k][kept] = i;
       share->owner[k][kept++] = c->owners[k][i];

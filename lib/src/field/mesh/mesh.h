@@ -44,7 +44,7 @@ dvi__cell_name dvi__name_cell(const dvi_mesh *mesh, int k, int64_t cell);
 /* Name a k-cell in the singular, "vertex", "edge", "triangle" and so on. */
 const char *dvi__degree_name(dvi_cell_kind kind, int k);
 
-/* Return the number of k-cells that a part of the whole mesh has, or -1 if there is no such part. */
+/* Return the number of k-cells that a part of the whole mesh has, or -1 if there is no part. */
 int64_t dvi__part_total(const dvi_mesh *mesh, const char *name, int k);
 
 /* Give the difference of two points, b - a, in a mesh whose space may repeat itself. */

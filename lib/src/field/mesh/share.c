@@ -1,5 +1,7 @@
 #include "field/mesh/share.h"
 
+#include <stdlib.h>
+
 #include "core/memory.h"
 #include "core/status.h"
 
@@ -31,6 +33,22 @@ int64_t dvi__find_number(const dvi_mesh *mesh, int k, int64_t number)
       last = middle;
   }
   return first < mesh->count[k] && numbers[first] == number ? first : -1;
+}
+
+static int compare_cells(const void *a, const void *b)
+{
+  const int first = *(const int *)a, second = *(const int *)b;
+  return (first > second) - (first < second);
+}
+
+int dvi__is_outer(const dvi_mesh *mesh, int64_t facet)
+{
+  int64_t count;
+  const int cell = (int)facet;
+  if (mesh->coface[2 * facet + 1] >= 0) return 0;
+  if (mesh->share == NULL) return 1;
+  const int *boundary = dvi_mesh_part_cells(mesh, "boundary", mesh->n - 1, &count);
+  return count > 0 && bsearch(&cell, boundary, (size_t)count, sizeof cell, compare_cells) != NULL;
 }
 
 /* ---- all processes ---- */
@@ -84,6 +102,17 @@ dvi_status dvi__sum_of_all(const dvi_mesh *mesh, dvi__accumulator *sum, double *
     DVI_TRY(dvi__count_all(mesh, DVI__SUM_NUMBERS, sum->number));
   }
   *value = dvi__accumulator_value(sum);
+  return DVI_OK;
+}
+
+dvi_status dvi__check_owned(const dvi_mesh *mesh, int k, int64_t count, const int *cell)
+{
+  for (int64_t i = 0; i < count; i++)
+    if (!dvi__owns(mesh, k, cell[i]))
+      return dvi__fail(DVI_BAD_ARGUMENT,
+                       "mesh: %s is of process %d and not of this one, %d: ask for all cells",
+                       dvi__name_cell(mesh, k, cell[i]).text, mesh->share->owner[k][cell[i]],
+                       mesh->share->ranks.rank);
   return DVI_OK;
 }
 

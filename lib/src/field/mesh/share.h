@@ -42,6 +42,9 @@ static inline double dvi__least_coordinate(const dvi_mesh *mesh, int axis, doubl
   return mesh->share == NULL ? here : mesh->share->least[axis];
 }
 
+/* Tell whether a facet is of the whole mesh's boundary, and not of the edge of a share alone. */
+int dvi__is_outer(const dvi_mesh *mesh, int64_t facet);
+
 /* Return the k-cell of a number in the whole mesh, or -1 if it is not of this share. */
 int64_t dvi__find_number(const dvi_mesh *mesh, int k, int64_t number);
 
@@ -64,6 +67,9 @@ dvi_status dvi__sum_of_all(const dvi_mesh *mesh, dvi__accumulator *sum, double *
 /* Replace numbers by their sums, or by the largest ones, over all processes. */
 dvi_status dvi__count_all(const dvi_mesh *mesh, int count, int64_t *number);
 dvi_status dvi__largest_of_all(const dvi_mesh *mesh, int count, double *number);
+
+/* Refuse k-cells of other processes. */
+dvi_status dvi__check_owned(const dvi_mesh *mesh, int k, int64_t count, const int *cell);
 
 /* Refuse a share for what needs a whole mesh, such as "march: avi". */
 dvi_status dvi__refuse_share(const dvi_mesh *mesh, const char *what);

@@ -51,7 +51,7 @@ static dvi_status mark_wall(rim *r, const dvi_wall *wall)
   const dvi_mesh *mesh = r->field->mesh;
   const int *facet = dvi_mesh_part_cells(mesh, wall->part, mesh->n - 1, &count);
   for (int64_t i = 0; i < count; i++) {
-    if (mesh->coface[2 * (int64_t)facet[i] + 1] >= 0) continue;
+    if (!dvi__is_outer(mesh, facet[i])) continue;
     r->is_absorbing[facet[i]] = 1;
     found += dvi__owns(mesh, mesh->n - 1, facet[i]);
   }

@@ -205,8 +205,7 @@ static dvi_status check_facets(const dvi_mesh *mesh, const char *part)
                 cells = dvi__part_total(mesh, part, mesh->n);
   int64_t outside = 0;
   for (int64_t i = 0; i < here; i++)
-    outside += mesh->coface[2 * (int64_t)number[i] + 1] < 0 &&
-               dvi__owns(mesh, mesh->n - 1, number[i]);
+    outside += dvi__is_outer(mesh, number[i]) && dvi__owns(mesh, mesh->n - 1, number[i]);
   DVI_TRY(dvi__count_all(mesh, 1, &outside));
   if (outside > 0 && (outside == count || cells > 0)) return DVI_OK;
   return dvi__fail(DVI_BAD_ARGUMENT,
@@ -223,7 +222,7 @@ static dvi_status add_condition(const dvi_field *field, const dvi_condition *con
   facet f = {.field = field, .condition = condition, .rule = rule, .b = b};
   const int *number = dvi_mesh_part_cells(mesh, condition->part, mesh->n - 1, &count);
   for (int64_t i = 0; i < count; i++) {
-    if (mesh->coface[2 * (int64_t)number[i] + 1] >= 0) continue;
+    if (!dvi__is_outer(mesh, number[i])) continue;
     place_facet(&f, number[i]);
     DVI_TRY(add_facet(&f));
   }

@@ -26,6 +26,7 @@
 #include "field/step/saved.h"
 #include "field/step/source.h"
 #include "field/step/sweep.h"
+#include "field/step/terms.h"
 
 /* What identifies a march in a file, and where it stands. */
 typedef struct place {
@@ -124,15 +125,6 @@ static double time_of(const leapfrog *l, int64_t n)
   return l->at.t0 + (double)n * l->at.dt;
 }
 
-/* Integrate the signals over a step around t_{n+1}. */
-static dvi_status find_impulses(leapfrog *l)
-{
-  const double half = l->at.dt / 2, t = time_of(l, l->at.n + 1);
-  for (int c = 0; c < l->field->currents; c++)
-    DVI_TRY(dvi__current_impulse(l->field, c, t - half, t + half, l->impulse + c));
-  return DVI_OK;
-}
-
 static void drift(leapfrog *l)
 {
   const double dt = l->at.dt;
@@ -169,11 +161,20 @@ static dvi_status kick_by_solution(leapfrog *l)
   return DVI_OK;
 }
 
+/* Integrate the signals over the step, before anything changes. */
+static dvi_status find_impulses(leapfrog *l)
+{
+  const dvi_field *f = l->field;
+  if (f->currents == 0) return DVI_OK;
+  const double t = time_of(l, l->at.n + 1);
+  return dvi__agree(f->mesh, dvi__find_impulses(f, t, l->at.dt / 2, l->impulse));
+}
+
 /* A solution that fails leaves the state as it was. Values that do not arrive leave none. */
 static dvi_status step(leapfrog *l)
 {
   dvi_status status = DVI_OK;
-  if (l->field->currents > 0) DVI_TRY(dvi__agree(l->field->mesh, find_impulses(l)));
+  DVI_TRY(find_impulses(l));
   if (l->gain == NULL) memcpy(l->solver.kept, l->state, (size_t)l->numbers * sizeof *l->state);
   drift(l);
   if (l->gain != NULL)
@@ -202,19 +203,6 @@ static dvi_status advance(void *self, double t)
 }
 
 /* ---- a start ---- */
-
-/* Give J^0 in place of impulses: the mean over the half step, so that nothing acts that came before
- * the start, or the signal at t_0 if it has no integral. */
-static dvi_status find_first_currents(leapfrog *l)
-{
-  const double half = l->at.dt / 2, t = l->at.t0;
-  for (int c = 0; c < l->field->currents; c++) {
-    const double from = l->field->current[c].impulse != NULL ? t : t - half;
-    DVI_TRY(dvi__current_impulse(l->field, c, from, t + half, l->impulse + c));
-    l->impulse[c] /= t + half - from;
-  }
-  return DVI_OK;
-}
 
 /* Take what is given, of each cell by its owner, and B = dA otherwise. */
 static dvi_status take(leapfrog *l, const dvi_march_state *state)
@@ -279,7 +267,8 @@ static dvi_status start(void *self, const dvi_march_state *state)
   const place before = l->at;
   l->at.t0 = l->at.t = state->t;
   l->at.n = 0;
-  dvi_status status = dvi__agree(l->field->mesh, find_first_currents(l));
+  dvi_status status = dvi__agree(
+      l->field->mesh, dvi__find_first_currents(l->field, state->t, l->at.dt / 2, l->impulse));
   if (status == DVI_OK) {
     if (l->gain == NULL) memcpy(l->solver.kept, l->state, (size_t)l->numbers * sizeof(double));
     status = take(l, state);
@@ -349,26 +338,16 @@ static dvi_status sample(const void *self, dvi_march_form form, int64_t count, c
   return DVI_OK;
 }
 
-/* Of a share, E at cells around which not all n-cells are here is known by their owners alone. */
-static dvi_status check_owners(const leapfrog *l, int64_t count, const int *cell)
-{
-  const dvi_field *f = l->field;
-  for (int64_t i = 0; i < count; i++)
-    if (!dvi__owns(f->mesh, f->degree, cell[i]))
-      return dvi__fail(DVI_BAD_ARGUMENT,
-                       "march: E in cell %d belongs to another process: ask for all cells",
-                       cell[i]);
-  return DVI_OK;
-}
-
+/* Of a share, E where not all cells around are here is known by the owner alone. */
 static dvi_status show(const void *self, dvi_march_form form, int64_t count, const int *cell,
                        double *values)
 {
   const leapfrog *l = self;
-  if (form == DVI_FORM_E && cell != NULL) DVI_TRY(check_owners(l, count, cell));
+  if (form == DVI_FORM_E && cell != NULL)
+    DVI_TRY(dvi__check_owned(l->field->mesh, l->field->degree, count, cell));
   DVI_TRY(sample(self, form, count, cell, values));
-  return form == DVI_FORM_E && cell == NULL ? dvi__refresh(l->field->mesh, l->field->degree, values)
-                                            : DVI_OK;
+  if (form != DVI_FORM_E || cell != NULL) return DVI_OK;
+  return dvi__refresh(l->field->mesh, l->field->degree, values);
 }
 
 /* E.M_k E/2 + B^n.M_{k+1} B^{n+1}/2 - source.(A^n + A^{n+1})/2 */
@@ -433,7 +412,7 @@ static void facts(const void *self, dvi_march_facts *facts)
 
 enum { VERSION = 2, PIECES = 5 };
 
-/* Lay the state out as make_state does: E, H, A, what currents have, and the charge at the start. */
+/* List the parts of the state in the order of make_state. */
 static void find_pieces(const leapfrog *l, dvi__piece piece[PIECES])
 {
   const dvi_field *f = l->field;
@@ -476,7 +455,7 @@ static dvi_status load(void *self, const dvi__sections *sections)
   leapfrog *l = self;
   const dvi_mesh *mesh = l->field->mesh;
   dvi__piece piece[PIECES];
-  dvi__section forms;
+  dvi__section forms = {0};
   place at;
   find_pieces(l, piece);
   const int64_t numbers = dvi__pieces_size(mesh, PIECES, piece);
@@ -538,7 +517,6 @@ static dvi_status make_state(leapfrog *l)
   return dvi__charge_create(f, l->J + f->currents, &l->charge);
 }
 
-/* keep = (1 - s)/(1 + s), gain = dt/(M (1 + s)) and inverse = 1/(M (1 + s)) with s = dt S/(2 M). */
 static dvi_status make_coefficients(leapfrog *l)
 {
   const dvi_field *f = l->field;
@@ -547,29 +525,8 @@ static dvi_status make_coefficients(leapfrog *l)
   if (f->damping.rows > 0) l->keep = DVI_NEW(double, f->cells);
   if (!l->gain || !l->inverse || (f->damping.rows > 0 && !l->keep))
     return dvi__fail(DVI_NO_MEMORY, "march: no memory for coefficients");
-  for (int64_t i = 0; i < f->unknowns; i++) {
-    const int64_t at = f->damping.rows > 0 ? dvi__csr_find(&f->damping, i, (int)i) : -1;
-    const double M = f->mass.value[i], S = at >= 0 ? f->damping.value[at] : 0,
-                 s = l->at.dt * S / (2 * M);
-    l->inverse[i] = 1 / (M * (1 + s));
-    l->gain[f->unknown[i]] = l->at.dt * l->inverse[i];
-    if (l->keep != NULL) l->keep[f->unknown[i]] = (1 - s) / (1 + s);
-  }
+  dvi__fill_coefficients(f, l->at.dt, l->keep, l->gain, l->inverse);
   return DVI_OK;
-}
-
-/* Make M + dt/2 S. */
-static dvi_status make_left(const dvi_field *f, double dt, dvi__csr *left)
-{
-  const dvi_matrix M = dvi__csr_view(&f->mass, 1), S = dvi__csr_view(&f->damping, 1);
-  dvi__csr half = {0};
-  if (f->damping.rows == 0) return dvi__csr_copy(&M, left);
-  DVI_TRY(dvi__csr_copy(&S, &half));
-  for (int64_t e = 0; e < half.start[half.rows]; e++) half.value[e] *= dt / 2;
-  const dvi_matrix view = dvi__csr_view(&half, 1);
-  const dvi_status status = dvi__csr_sum(&M, &view, left);
-  dvi__csr_clear(&half);
-  return status;
 }
 
 /* Make the matrices of a step and the room of its solutions. */
@@ -588,7 +545,7 @@ static dvi_status make_solver(leapfrog *l)
   s->right = s->curl + f->cells;
   s->x = s->right + n;
   s->kept = s->x + n;
-  DVI_TRY(make_left(f, l->at.dt, &s->left));
+  DVI_TRY(dvi__make_left(f, l->at.dt, &s->left));
   s->matrix = dvi__csr_view(&s->left, 1);
   s->mass = dvi__csr_view(&f->mass, 1);
   s->of_step = dvi__products_of(&s->matrix);

@@ -25,8 +25,8 @@ int64_t dvi__pieces_size(const dvi_mesh *mesh, int pieces, const dvi__piece *pie
   return sum;
 }
 
-/* Put a form together. The owner of a cell adds the bits of its value to the zeros of the others, so
- * that their sum as integers is exact, of -0 as well. `bits` has room for a chunk. */
+/* Put a form together. The owner of a cell adds the bits of its value to the zeros of the others,
+ * so that their sum as integers is exact, of -0 as well. `bits` has room for a chunk. */
 static dvi_status put_form(const dvi_mesh *mesh, const dvi__piece *piece, int64_t *bits,
                            dvi__sections_writer *writer)
 {
@@ -54,7 +54,7 @@ dvi_status dvi__pieces_put(const dvi_mesh *mesh, int pieces, const dvi__piece *p
                                            ? DVI_OK
                                            : dvi__fail(DVI_NO_MEMORY, "march: no memory to save"));
   for (int i = 0; i < pieces && status == DVI_OK; i++) {
-    if (mesh->share != NULL && piece[i].degree >= 0)
+    if (bits != NULL && piece[i].degree >= 0)
       status = put_form(mesh, piece + i, bits, writer);
     else
       dvi__section_put(writer, piece[i].value, (size_t)piece[i].count * sizeof(double));

@@ -15,8 +15,8 @@ typedef struct dvi__piece {
 /* Return how many numbers of the whole mesh the pieces have together. */
 int64_t dvi__pieces_size(const dvi_mesh *mesh, int pieces, const dvi__piece *piece);
 
-/* Put the pieces' numbers of the whole mesh into the open section, every bit as it is. Called on all
- * processes, of which those may have a writer without memory that do not need the file. */
+/* Put the pieces' numbers of the whole mesh into the open section, every bit as it is. Called on
+ * all processes, of which those may have a writer without memory that do not need the file. */
 dvi_status dvi__pieces_put(const dvi_mesh *mesh, int pieces, const dvi__piece *piece,
                            dvi__sections_writer *writer);
 

@@ -1,6 +1,6 @@
 /* Inertia of large symmetric matrices. */
-#ifndef DVI_NUM_INERTIA_H
-#define DVI_NUM_INERTIA_H
+#ifndef DVI_BOUNDARY_INERTIA_H
+#define DVI_BOUNDARY_INERTIA_H
 #include "num/pattern.h"
 
 /* Count the negative eigenvalues of the leading `size` rows and columns of a matrix. Its entries

@@ -1,4 +1,4 @@
-#include "support/field/mesh_files.h"
+#include "support/mesh_files.h"
 
 #include <string.h>
 

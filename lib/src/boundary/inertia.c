@@ -1,4 +1,4 @@
-#include "num/inertia.h"
+#include "boundary/inertia.h"
 
 #include <math.h>
 #include <string.h>

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "num/inertia.h"
+#include "boundary/inertia.h"
 #include "support/suite.h"
 
 enum { MOST = 48 };
