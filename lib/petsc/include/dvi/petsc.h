@@ -4,8 +4,9 @@
  *  (dvi-petsc). A binary that is linked to Debian's PETSc may be passed on under the GPL only,
  *  because that PETSc is linked to FFTW.
  *
- *  MPI and PETSc are started by the program (PetscInitialize). All processes of the communicator
- *  make the same calls. */
+ *  MPI and PETSc are started by the program, by PetscInitialize. A program that calls MPI_Init
+ *  itself sets SCOTCH_PTHREAD_NUMBER=1 before, because threads of PT-Scotch 7.0 may wait for each
+ *  other without end otherwise. All processes of the communicator make the same calls. */
 #ifndef DVI_PETSC_H
 #define DVI_PETSC_H
 #include <dvi/mesh.h>
