@@ -76,16 +76,16 @@ static bool read_rows(const join *j, FILE *stream, const char *head, const char 
 static bool join_file(join *j, const char *path)
 {
   char head[SWEEP_HEAD_SIZE] = "";
-  study_part part = {.part = 0};
+  study_part found = {.part = 0};
   FILE *stream = fopen(path, "r");
   if (stream == NULL) {
     complain("cannot read '%s': %s", path, strerror(errno));
     return false;
   }
   (void)fgets(head, sizeof head, stream);
-  const sweep_difference difference = sweep_compare(head, j->key, &part);
+  const sweep_difference difference = sweep_compare(head, j->key, &found);
   const bool good = difference == SWEEP_SAME
-                        ? take_part(j, path, &part) && read_rows(j, stream, head, path, &part)
+                        ? take_part(j, path, &found) && read_rows(j, stream, head, path, &found)
                         : refuse_difference(path, difference);
   (void)fclose(stream);
   return good;

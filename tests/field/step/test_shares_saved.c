@@ -47,7 +47,7 @@ typedef struct run {
 /* A field with absorbing walls, so that the march keeps A, and charge that two currents move. */
 static run run_on(const dvi_mesh *mesh, double permittivity)
 {
-  run made = {NULL};
+  run made = {.field = NULL};
   const int64_t cells = dvi_mesh_count(mesh, 2);
   double *eps = malloc((size_t)cells * sizeof *eps);
   for (int64_t c = 0; c < cells; c++) eps[c] = permittivity;
