@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "core/memory.h"
 #include "support/field/generated.h"
 #include "support/meshes.h"
 #include "support/shares/shares.h"
@@ -109,6 +110,25 @@ static void check_refusals(void)
   dvi_mesh_destroy(&mine);
 }
 
+/* If memory fails on the last process alone, behind the division's own, all of them fail alike. */
+static void check_memory(const char *partitioner)
+{
+  const dvi_generator_options line = {.cells = {12}};
+  const dvi_division_options options = {.size = sizeof options, .partitioner = partitioner};
+  dvi_mesh *mesh = generated("interval", line), *share;
+  dvi_division *division;
+  dvi_status status = DVI_NO_MEMORY;
+  for (int successes = 1; status == DVI_NO_MEMORY; successes++) {
+    if (rank == ranks - 1) dvi__fail_allocations_after(successes);
+    status = dvi_mesh_divide(mesh, &options, &share, &division);
+    dvi__fail_allocations_after(-1);
+    expect(status == DVI_OK || (status == DVI_NO_MEMORY && share == NULL), "memory", partitioner);
+    dvi_mesh_destroy(&share);
+    dvi_division_destroy(&division);
+  }
+  dvi_mesh_destroy(&mesh);
+}
+
 /* Return whether a division before PETSc's start is refused. */
 static int is_too_early(void)
 {
@@ -129,6 +149,8 @@ int main(int argc, char **argv)
   expect(early, "divided before PETSc's start", "start");
   check_fields();
   check_refusals();
+  check_memory("blocks");
+  check_memory("ptscotch");
   (void)PetscFinalize();
   return failures > 0;
 }

@@ -11,7 +11,7 @@
 enum { DEGREES = DVI_MESH_DIMENSION_MAX + 1, NAME_SIZE = 32 };
 
 struct dvi_division {
-  MPI_Comm comm;
+  dvi__world world;        /* the first member, so that a division is one */
   PetscSF forest[DEGREES]; /* roots are the owners' cells, leaves the ghosts */
   char partitioner[NAME_SIZE];
   dvi_division_facts facts;
@@ -26,18 +26,6 @@ static int refresh(int degree, double *values, void *user)
   int failed = PetscSFBcastBegin(forest, MPI_DOUBLE, values, values, MPI_REPLACE);
   if (failed == 0) failed = PetscSFBcastEnd(forest, MPI_DOUBLE, values, values, MPI_REPLACE);
   return failed;
-}
-
-static int sum(int count, int64_t *number, void *user)
-{
-  return MPI_Allreduce(MPI_IN_PLACE, number, count, MPI_INT64_T, MPI_SUM,
-                       ((const dvi_division *)user)->comm);
-}
-
-static int largest(int count, double *number, void *user)
-{
-  return MPI_Allreduce(MPI_IN_PLACE, number, count, MPI_DOUBLE, MPI_MAX,
-                       ((const dvi_division *)user)->comm);
 }
 
 /* ---- star forests ---- */
@@ -85,7 +73,8 @@ static PetscErrorCode plant(dvi_division *division, const selections *s, int64_t
 {
   const selection *own = s->own + k, *ghost = s->ghost + k;
   PetscLayout layout;
-  PetscCall(PetscLayoutCreateFromSizes(division->comm, PETSC_DECIDE, (PetscInt)total, 1, &layout));
+  PetscCall(
+      PetscLayoutCreateFromSizes(division->world.comm, PETSC_DECIDE, (PetscInt)total, 1, &layout));
   PetscCall(PetscSFCreateByMatchingIndices(layout, own->count, own->number, own->place, 0,
                                            ghost->count, ghost->number, ghost->place, 0, NULL,
                                            &division->forest[k]));
@@ -103,17 +92,18 @@ static PetscErrorCode plant_all(dvi_division *division, const selections *s, con
   for (int k = 0; k <= n; k++) PetscCall(plant(division, s, dvi_mesh_count(mesh, k), k));
   PetscCall(PetscSFGetRootRanks(division->forest[n], &neighbours, NULL, NULL, NULL, NULL));
   division->facts.neighbours = (int)neighbours;
+  division->facts.rank = division->world.rank;
+  division->facts.ranks = division->world.count;
   return 0;
 }
 
-static dvi_status plant_forests(dvi_division *division, const dvi__divider *divider,
-                                const dvi_mesh *share, const dvi_mesh *mesh)
+static dvi_status plant_forests(dvi_division *division, const dvi_mesh *share, const dvi_mesh *mesh)
 {
   selections s = {0};
-  dvi_status status = dvi__agree_all(divider,
-                                     dvi__check_petsc(select_all(share, divider->rank, &s)));
+  dvi_status status = dvi__world_agree(
+      &division->world, dvi__check_petsc(select_all(share, division->world.rank, &s)));
   if (status == DVI_OK)
-    status = dvi__agree_all(divider, dvi__check_petsc(plant_all(division, &s, mesh)));
+    status = dvi__world_agree(&division->world, dvi__check_petsc(plant_all(division, &s, mesh)));
   for (int k = 0; k < DEGREES; k++) {
     (void)drop_selection(s.own + k);
     (void)drop_selection(s.ghost + k);
@@ -149,20 +139,8 @@ static dvi_status choose(const dvi_division_options *options, dvi_division *divi
   return DVI_OK;
 }
 
-static dvi_status join(const dvi_division_options *options, dvi_division *division)
-{
-  static const MPI_Comm none = 0;
-  const int is_given = options != NULL && options->comm != MPI_COMM_NULL && options->comm != none;
-  if (MPI_Comm_dup(is_given ? options->comm : MPI_COMM_WORLD, &division->comm) != MPI_SUCCESS)
-    return dvi__fail(DVI_SOLVER_FAILED, "petsc: MPI could not make a communicator");
-  (void)MPI_Comm_set_errhandler(division->comm, MPI_ERRORS_RETURN);
-  (void)MPI_Comm_rank(division->comm, &division->facts.rank);
-  (void)MPI_Comm_size(division->comm, &division->facts.ranks);
-  return DVI_OK;
-}
-
 /* The processes have the same mesh, as far as the numbers of cells tell, with enough cells. */
-static dvi_status check_mesh(const dvi_mesh *mesh, const dvi__divider *divider)
+static dvi_status check_mesh(const dvi_mesh *mesh, const dvi__world *world)
 {
   int64_t count[2 * DEGREES] = {0};
   const int n = dvi_mesh_dimension(mesh);
@@ -170,42 +148,39 @@ static dvi_status check_mesh(const dvi_mesh *mesh, const dvi__divider *divider)
     count[2 * k] = dvi_mesh_count(mesh, k);
     count[2 * k + 1] = -count[2 * k];
   }
-  if (MPI_Allreduce(MPI_IN_PLACE, count, 2 * DEGREES, MPI_INT64_T, MPI_MAX, divider->comm) !=
+  if (MPI_Allreduce(MPI_IN_PLACE, count, 2 * DEGREES, MPI_INT64_T, MPI_MAX, world->comm) !=
       MPI_SUCCESS)
-    return dvi__fail(DVI_SOLVER_FAILED, "petsc: process %d of %d could not speak with the others",
-                     divider->rank, divider->ranks);
+    return dvi__world_fail(world);
   for (int k = 0; k < DEGREES; k++)
     if (count[2 * k] != -count[2 * k + 1])
       return dvi__fail(DVI_BAD_ARGUMENT,
                        "petsc: the mesh is not the same on all processes: they "
                        "have %lld to %lld cells of degree %d",
                        (long long)-count[2 * k + 1], (long long)count[2 * k], k);
-  if (count[2 * n] >= divider->ranks) return DVI_OK;
+  if (count[2 * n] >= world->count) return DVI_OK;
   return dvi__fail(DVI_BAD_ARGUMENT, "petsc: %d processes cannot share %lld cells: take fewer",
-                   divider->ranks, (long long)count[2 * n]);
+                   world->count, (long long)count[2 * n]);
 }
 
 static dvi_status make(const dvi_mesh *mesh, dvi_division *division, dvi_mesh **share)
 {
-  const dvi__divider divider = {.comm = division->comm,
-                                .rank = division->facts.rank,
-                                .ranks = division->facts.ranks,
-                                .partitioner = division->partitioner};
+  const dvi__world *world = &division->world;
+  const dvi__divider divider = {.world = world, .partitioner = division->partitioner};
   const dvi_ranks ranks = {.size = sizeof ranks,
-                           .rank = divider.rank,
-                           .count = divider.ranks,
+                           .rank = world->rank,
+                           .count = world->count,
                            .refresh = refresh,
-                           .sum = sum,
-                           .largest = largest,
+                           .sum = dvi__world_sum,
+                           .largest = dvi__world_largest,
                            .user = division};
-  DVI_TRY(check_mesh(mesh, &divider));
+  DVI_TRY(check_mesh(mesh, world));
   int *owner = DVI_NEW(int, dvi_mesh_count(mesh, dvi_mesh_dimension(mesh)));
-  dvi_status status = dvi__agree_all(
-      &divider, owner != NULL ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "petsc: no memory for owners"));
+  dvi_status status = dvi__world_agree(
+      world, owner != NULL ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "petsc: no memory for owners"));
   if (status == DVI_OK) status = dvi__find_owners(mesh, &divider, owner);
-  if (status == DVI_OK) status = dvi__agree_all(&divider, dvi_mesh_cut(mesh, owner, &ranks, share));
+  if (status == DVI_OK) status = dvi__world_agree(world, dvi_mesh_cut(mesh, owner, &ranks, share));
   dvi__release(owner);
-  return status == DVI_OK ? plant_forests(division, &divider, *share, mesh) : status;
+  return status == DVI_OK ? plant_forests(division, *share, mesh) : status;
 }
 
 dvi_status dvi_mesh_divide(const dvi_mesh *mesh, const dvi_division_options *options,
@@ -220,11 +195,12 @@ dvi_status dvi_mesh_divide(const dvi_mesh *mesh, const dvi_division_options *opt
   DVI_TRY(check_started());
   dvi_division *made = DVI_NEW(dvi_division, 1);
   if (made == NULL) return dvi__fail(DVI_NO_MEMORY, "petsc: no memory");
-  made->comm = MPI_COMM_NULL;
+  made->world.comm = MPI_COMM_NULL;
   /* The sentence is the library's, and PETSc prints none. */
   (void)PetscPushErrorHandler(PetscReturnErrorHandler, NULL);
   dvi_status status = choose(options, made);
-  if (status == DVI_OK) status = join(options, made);
+  if (status == DVI_OK)
+    status = dvi__world_join(options != NULL ? options->comm : MPI_COMM_NULL, &made->world);
   if (status == DVI_OK) status = make(mesh, made, share);
   (void)PetscPopErrorHandler();
   if (status != DVI_OK) {
@@ -246,7 +222,7 @@ void dvi_division_destroy(dvi_division **division)
   if (division == NULL || *division == NULL) return;
   (void)PetscFinalized(&ended);
   for (int k = 0; k < DEGREES && !ended; k++) (void)PetscSFDestroy(&(*division)->forest[k]);
-  if ((*division)->comm != MPI_COMM_NULL && !ended) (void)MPI_Comm_free(&(*division)->comm);
+  if (!ended) dvi__world_leave(&(*division)->world);
   dvi__release(*division);
   *division = NULL;
 }

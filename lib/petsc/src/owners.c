@@ -18,17 +18,6 @@ dvi_status dvi__check_petsc(PetscErrorCode code)
                    reason != NULL ? reason : "");
 }
 
-dvi_status dvi__agree_all(const dvi__divider *divider, dvi_status status)
-{
-  int worst = (int)status;
-  if (MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_INT, MPI_MAX, divider->comm) != MPI_SUCCESS)
-    return dvi__fail(DVI_SOLVER_FAILED, "petsc: process %d of %d could not speak with the others",
-                     divider->rank, divider->ranks);
-  if (status != DVI_OK || worst == DVI_OK) return status;
-  return dvi__fail((dvi_status)worst,
-                   "petsc: another process of %d failed, whose sentence tells why", divider->ranks);
-}
-
 /* ---- the graph of the n-cells ---- */
 
 /* Cells `first` to `last`-1 of the graph, in compressed rows. */
@@ -118,10 +107,10 @@ static dvi_status partition(const dvi__divider *divider, int64_t cells, graph *g
   Mat adjacency = NULL;
   MatPartitioning partitioning = NULL;
   dvi_status status = dvi__check_petsc(
-      MatCreateMPIAdj(divider->comm, (PetscInt)(g->last - g->first), (PetscInt)cells, g->start,
-                      g->neighbour, NULL, &adjacency));
+      MatCreateMPIAdj(divider->world->comm, (PetscInt)(g->last - g->first), (PetscInt)cells,
+                      g->start, g->neighbour, NULL, &adjacency));
   if (status == DVI_OK)
-    status = dvi__check_petsc(MatPartitioningCreate(divider->comm, &partitioning));
+    status = dvi__check_petsc(MatPartitioningCreate(divider->world->comm, &partitioning));
   if (status == DVI_OK)
     status = dvi__check_petsc(MatPartitioningSetAdjacency(partitioning, adjacency));
   if (status == DVI_OK) status = set_type(partitioning, divider->partitioner);
@@ -134,9 +123,10 @@ static dvi_status partition(const dvi__divider *divider, int64_t cells, graph *g
 /* Tell all processes the owners that each has found. */
 static PetscErrorCode gather(const dvi__divider *divider, int64_t cells, PetscInt *owner)
 {
-  for (int r = 0; r < divider->ranks; r++) {
-    const int64_t first = cells * r / divider->ranks, last = cells * (r + 1) / divider->ranks;
-    PetscCallMPI(MPI_Bcast(owner + first, (int)(last - first), MPIU_INT, r, divider->comm));
+  for (int r = 0; r < divider->world->count; r++) {
+    const int64_t first = cells * r / divider->world->count,
+                  last = cells * (r + 1) / divider->world->count;
+    PetscCallMPI(MPI_Bcast(owner + first, (int)(last - first), MPIU_INT, r, divider->world->comm));
   }
   return 0;
 }
@@ -144,25 +134,25 @@ static PetscErrorCode gather(const dvi__divider *divider, int64_t cells, PetscIn
 static dvi_status find_by_graph(const dvi_mesh *mesh, const dvi__divider *divider, int64_t cells,
                                 PetscInt *found)
 {
-  const int rank = divider->rank, ranks = divider->ranks;
+  const int rank = divider->world->rank, ranks = divider->world->count;
   graph g = {.first = cells * rank / ranks, .last = cells * (rank + 1) / ranks};
   const dvi_status made = found != NULL ? make_graph(mesh, &g)
                                         : dvi__fail(DVI_NO_MEMORY, "petsc: no memory for owners");
-  dvi_status status = dvi__agree_all(divider, made);
+  dvi_status status = dvi__world_agree(divider->world, made);
   if (status != DVI_OK) {
     (void)PetscFree(g.start);
     (void)PetscFree(g.neighbour);
     return status;
   }
-  status = dvi__agree_all(divider, partition(divider, cells, &g, found));
+  status = dvi__world_agree(divider->world, partition(divider, cells, &g, found));
   return status == DVI_OK ? dvi__check_petsc(gather(divider, cells, found)) : status;
 }
 
 dvi_status dvi__find_owners(const dvi_mesh *mesh, const dvi__divider *divider, int *owner)
 {
   const int64_t cells = dvi_mesh_count(mesh, dvi_mesh_dimension(mesh));
-  if (strcmp(divider->partitioner, "blocks") == 0 || divider->ranks == 1) {
-    for (int64_t c = 0; c < cells; c++) owner[c] = (int)(c * divider->ranks / cells);
+  if (strcmp(divider->partitioner, "blocks") == 0 || divider->world->count == 1) {
+    for (int64_t c = 0; c < cells; c++) owner[c] = (int)(c * divider->world->count / cells);
     return DVI_OK;
   }
   PetscInt *found = DVI_NEW(PetscInt, cells);

@@ -5,18 +5,16 @@
 #include <dvi/mesh.h>
 #include <petscsys.h>
 
+#include "world.h"
+
 /* The processes, and the partitioner's name. */
 typedef struct dvi__divider {
-  MPI_Comm comm;
-  int rank, ranks;
+  const dvi__world *world;
   const char *partitioner;
 } dvi__divider;
 
 /* Return the status of a call of PETSc, with a sentence if it failed. */
 dvi_status dvi__check_petsc(PetscErrorCode code);
-
-/* Agree with all processes whether they have succeeded so far. If not, all of them fail. */
-dvi_status dvi__agree_all(const dvi__divider *divider, dvi_status status);
 
 /* Find the owners [n-cells] of the mesh, the same on all processes. */
 dvi_status dvi__find_owners(const dvi_mesh *mesh, const dvi__divider *divider, int *owner);

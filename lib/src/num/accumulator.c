@@ -85,6 +85,14 @@ void dvi__accumulate_terms(dvi__accumulator *sum, double *term)
     if (term[i] != 0) dvi__accumulate(sum, term[i]);
 }
 
+dvi__accumulator *dvi__block_sum_end(dvi__block_sum *s)
+{
+  while (s->count > 0 && s->count < DVI__SUM_TERMS) s->term[s->count++] = 0;
+  if (s->count > 0) dvi__accumulate_terms(&s->sum, s->term);
+  s->count = 0;
+  return &s->sum;
+}
+
 void dvi__accumulate_products(dvi__accumulator *sum, int64_t n, const double *x, const double *y,
                               const char *taken)
 {

@@ -59,6 +59,24 @@ static inline void dvi__accumulate(dvi__accumulator *sum, double term)
 /* Add DVI__SUM_TERMS terms, which are overwritten. It takes less time than one after the other. */
 void dvi__accumulate_terms(dvi__accumulator *sum, double *term);
 
+/* A sum of many terms, which are added in blocks. All zero for none. */
+typedef struct dvi__block_sum {
+  dvi__accumulator sum;
+  int count; /* of terms in the block */
+  double term[DVI__SUM_TERMS];
+} dvi__block_sum;
+
+static inline void dvi__block_sum_add(dvi__block_sum *s, double term)
+{
+  s->term[s->count++] = term;
+  if (s->count < DVI__SUM_TERMS) return;
+  dvi__accumulate_terms(&s->sum, s->term);
+  s->count = 0;
+}
+
+/* Add the terms of the block, and return the sum. */
+dvi__accumulator *dvi__block_sum_end(dvi__block_sum *s);
+
 /* Add the products of n numbers, each rounded. `taken` [n] is not 0 for those that count. It is
  * NULL for all. */
 void dvi__accumulate_products(dvi__accumulator *sum, int64_t n, const double *x, const double *y,

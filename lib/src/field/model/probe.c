@@ -184,7 +184,7 @@ typedef struct source {
   const dvi_mesh *mesh;
   dvi__field_sampler *sample;
   const void *of;
-  dvi__accumulator total;
+  dvi__block_sum total;
 } source;
 
 static dvi_status sum(const source *s, dvi_march_form form, const dvi__functional *functional,
@@ -202,7 +202,7 @@ static dvi_status add_value(source *s, const dvi__probe *probe)
   double value;
   if (!probe->value.is_here) return DVI_OK;
   DVI_TRY(sum(s, probe->is_B ? DVI_FORM_B : DVI_FORM_E, &probe->value, &value));
-  dvi__accumulate(&s->total, value);
+  dvi__block_sum_add(&s->total, value);
   return DVI_OK;
 }
 
@@ -214,7 +214,7 @@ static dvi_status add_power(source *s, const dvi__probe *probe)
     if (!product->factor[0].is_here) continue;
     DVI_TRY(sum(s, DVI_FORM_E, product->factor, &E));
     DVI_TRY(sum(s, product->is_square ? DVI_FORM_E : DVI_FORM_B, product->factor + 1, &other));
-    dvi__accumulate(&s->total, E * other);
+    dvi__block_sum_add(&s->total, E * other);
   }
   return DVI_OK;
 }
@@ -229,7 +229,8 @@ static dvi_status add_energy(source *s, dvi_march_form form, int degree, const d
   if (status == DVI_OK) {
     dvi_matrix_multiply(&M, 0, values, product);
     for (int64_t i = 0; i < M.rows; i++)
-      if (dvi__owns(s->mesh, degree, i)) dvi__accumulate(&s->total, 0.5 * values[i] * product[i]);
+      if (dvi__owns(s->mesh, degree, i))
+        dvi__block_sum_add(&s->total, 0.5 * values[i] * product[i]);
   }
   dvi__release(values);
   return status;
@@ -251,7 +252,7 @@ dvi_status dvi__field_probe(const dvi_field *field, int i, dvi__field_sampler *s
                                 ? add_power(&s, probe)
                                 : add_energies(&s, field->degree, probe);
   DVI_TRY(dvi__agree(field->mesh, status));
-  return dvi__sum_of_all(field->mesh, &s.total, value);
+  return dvi__sum_of_all(field->mesh, dvi__block_sum_end(&s.total), value);
 }
 
 /* ---- states of a mechanical system ---- */

@@ -356,22 +356,22 @@ static dvi_status energy(const void *self, double *value)
   const leapfrog *l = self;
   const dvi_field *f = l->field;
   double *next = l->spare, *product = l->spare + l->sweep.faces;
-  dvi__accumulator sum = {.terms = 0};
+  dvi__block_sum sum = {.count = 0};
   dvi_matrix M;
   DVI_TRY(dvi_star_matrix(f->star, f->degree + 1, &M));
   for (int64_t b = 0; b < l->sweep.faces; b++) next[b] = B_after(l, l->at.dt, b);
   dvi_matrix_multiply(&M, 0, next, product);
   for (int64_t b = 0; b < l->sweep.faces; b++)
     if (dvi__owns(f->mesh, f->degree + 1, b))
-      dvi__accumulate(&sum, 0.5 * B_after(l, 0, b) * product[b]);
+      dvi__block_sum_add(&sum, 0.5 * B_after(l, 0, b) * product[b]);
   for (int64_t i = 0; i < f->unknowns; i++) {
     const int c = f->unknown[i];
     if (!dvi__owns(f->mesh, f->degree, c)) continue;
-    dvi__accumulate(&sum, 0.5 * dvi__field_row(f, &f->mass, i, l->E) * l->E[c]);
+    dvi__block_sum_add(&sum, 0.5 * dvi__field_row(f, &f->mass, i, l->E) * l->E[c]);
     if (l->source != NULL)
-      dvi__accumulate(&sum, -l->source[i] * (l->A[c] - l->at.dt / 2 * l->E[c]));
+      dvi__block_sum_add(&sum, -l->source[i] * (l->A[c] - l->at.dt / 2 * l->E[c]));
   }
-  return dvi__sum_of_all(f->mesh, &sum, value);
+  return dvi__sum_of_all(f->mesh, dvi__block_sum_end(&sum), value);
 }
 
 static dvi_status charge_error(const void *self, double *error)

@@ -45,14 +45,14 @@ static void add_product(const lanczos *l, int c, const int *first, double *x, co
   const int places = dvi__yee_places(&l->grid, c, 0);
   double *star = l->grid.scratch;
   dvi__yee_stars(&l->grid, c, first, places, star);
-  for (int i = 0; i < places; i++) dvi__yee_add(sum, star[i] * x[i] * z[i]);
+  for (int i = 0; i < places; i++) dvi__block_sum_add(sum, star[i] * x[i] * z[i]);
 }
 
 static double product(const lanczos *l, double **x, double **z)
 {
-  dvi__yee_sum sum = {.count = 0};
+  dvi__block_sum sum = {.count = 0};
   for_rows_of(l, x, z, add_product, &sum);
-  return dvi__yee_sum_up(&l->grid, &sum);
+  return dvi__yee_sum_of_all(&l->grid, dvi__block_sum_end(&sum));
 }
 
 static void combine_row(const lanczos *l, int c, const int *first, double *x, const double *z,

@@ -13,7 +13,7 @@ enum { ENERGY, CHARGE, GAUSS, DIVERGENCE, FIXED };
 /* ---- energy ---- */
 
 /* Sum star E^2/2, or star B^n B^{n+1}/2 without sources, over the places of a row. */
-static void add_energy_of_row(const dvi__yee *y, int component, int j, int k, dvi__yee_sum *sum)
+static void add_energy_of_row(const dvi__yee *y, int component, int j, int k, dvi__block_sum *sum)
 {
   const int c = component % 3, a = (c + 1) % 3, b = (c + 2) % 3, is_face = component >= DVI__YEE_B,
             places = dvi__yee_places(y, component, 0), first[3] = {0, j, k};
@@ -26,21 +26,21 @@ static void add_energy_of_row(const dvi__yee *y, int component, int j, int k, dv
     const ptrdiff_t up = p != f ? y->next[a] : 0, right = q != f ? y->next[b] : 0;
     for (int i = 0; i < places; i++) {
       const double curl = is_face ? (p[i + up] - p[i]) - (q[i + right] - q[i]) : 0;
-      dvi__yee_add(sum, 0.5 * star[i] * f[i] * (f[i] - y->dt * curl));
+      dvi__block_sum_add(sum, 0.5 * star[i] * f[i] * (f[i] - y->dt * curl));
     }
   }
 }
 
 static double energy_of(const dvi__yee *y)
 {
-  dvi__yee_sum sum = {.count = 0};
+  dvi__block_sum sum = {.count = 0};
   for (int component = 0; component < 6; component++) {
     if (y->slot[component] < 0) continue;
     for (int k = dvi__yee_begin(y, 2); k < dvi__yee_end(y, component, 2); k++)
       for (int j = dvi__yee_begin(y, 1); j < dvi__yee_end(y, component, 1); j++)
         add_energy_of_row(y, component, j, k, &sum);
   }
-  return dvi__yee_sum_up(y, &sum);
+  return dvi__yee_sum_of_all(y, dvi__block_sum_end(&sum));
 }
 
 /* ---- charge ---- */
@@ -131,7 +131,7 @@ typedef struct charges {
 
 /* Visit the own nodes. Keep their outflows, or compare with those of the start. */
 static void visit_own_nodes(const dvi__yee *y, int all, double *keep, const double *kept,
-                            dvi__yee_sum *sum, double *most)
+                            dvi__block_sum *sum, double *most)
 {
   const double *below = displacements_below(y, all);
   int node[3] = {0, 0, 0};
@@ -144,7 +144,7 @@ static void visit_own_nodes(const dvi__yee *y, int all, double *keep, const doub
         const double flow = outflow(y, node, all, below, &size);
         if (keep != NULL) keep[at] = flow;
         const double change = flow - (kept != NULL ? kept[at] : 0);
-        dvi__yee_add(sum, flow);
+        dvi__block_sum_add(sum, flow);
         most[0] = fmax(most[0], fabs(change));
         most[1] = fmax(most[1], size);
       }
@@ -152,11 +152,11 @@ static void visit_own_nodes(const dvi__yee *y, int all, double *keep, const doub
 
 static charges visit_nodes(const dvi__yee *y, int all, double *keep, const double *kept)
 {
-  dvi__yee_sum sum = {.count = 0};
+  dvi__block_sum sum = {.count = 0};
   double most[2] = {0, 0};
   if (y->degree == 1) visit_own_nodes(y, all, keep, kept, &sum, most);
   dvi__yee_largest_of_all(y, 2, most);
-  return (charges){dvi__yee_sum_up(y, &sum), most[0], most[1]};
+  return (charges){dvi__yee_sum_of_all(y, dvi__block_sum_end(&sum)), most[0], most[1]};
 }
 
 void dvi__yee_keep_charge(dvi__yee *y)
@@ -263,7 +263,7 @@ static double H_on_plane(const dvi__yee_moment *m, int c, int axis, const int *p
 /* Add the flux of E x H through the plane of nodes `at` of an axis, along the axis or against it,
  * from node lower to node upper of the others. E_b H_c - E_c H_b. */
 static void add_flux_through(const dvi__yee_moment *m, int axis, int at, const int *lower,
-                             const int *upper, double way, dvi__yee_sum *sum)
+                             const int *upper, double way, dvi__block_sum *sum)
 {
   const dvi__yee *y = m->yee;
   for (int side = 0; side < 2; side++) {
@@ -280,7 +280,7 @@ static void add_flux_through(const dvi__yee_moment *m, int axis, int at, const i
                      width = a->is_trivial ? place[h] == lower[h] : before + after;
         if (width == 0 || !is_own(y, e, place)) continue;
         const value E = dvi__yee_E_at(m, e, place);
-        dvi__yee_add(sum, sign * width * E.re * H_on_plane(m, h, axis, place));
+        dvi__block_sum_add(sum, sign * width * E.re * H_on_plane(m, h, axis, place));
       }
   }
 }
@@ -289,7 +289,7 @@ static double flux_value(const dvi__yee_moment *m, const dvi_yee_flux *flux)
 {
   const dvi__yee *y = m->yee;
   int lower[3], upper[3], flat = -1;
-  dvi__yee_sum sum = {.count = 0};
+  dvi__block_sum sum = {.count = 0};
   for (int l = 0; l < 3; l++) {
     lower[l] = l < y->axes ? dvi__yee_nearest(&y->axis[l], flux->lower[l]) : 0;
     upper[l] = l < y->axes ? dvi__yee_nearest(&y->axis[l], flux->upper[l]) : 1;
@@ -300,7 +300,7 @@ static double flux_value(const dvi__yee_moment *m, const dvi_yee_flux *flux)
     add_flux_through(m, l, upper[l], lower, upper, 1, &sum);
     add_flux_through(m, l, lower[l], lower, upper, -1, &sum);
   }
-  return dvi__yee_sum_up(y, &sum);
+  return dvi__yee_sum_of_all(y, dvi__block_sum_end(&sum));
 }
 
 /* ---- observables ---- */

@@ -141,14 +141,6 @@ double dvi__yee_sum_of_all(const dvi__yee *y, dvi__accumulator *sum)
   return dvi__accumulator_value(sum);
 }
 
-double dvi__yee_sum_up(const dvi__yee *y, dvi__yee_sum *s)
-{
-  while (s->count > 0 && s->count < DVI__SUM_TERMS) s->term[s->count++] = 0;
-  if (s->count > 0) dvi__accumulate_terms(&s->sum, s->term);
-  s->count = 0;
-  return dvi__yee_sum_of_all(y, &s->sum);
-}
-
 /* ---- planes ---- */
 
 /* Send the first `count` numbers for each copy. Return 0 if there is no process to receive from. */

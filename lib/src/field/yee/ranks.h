@@ -32,20 +32,4 @@ dvi_status dvi__yee_agree(const dvi__yee *yee, dvi_status status);
 double dvi__yee_sum_of_all(const dvi__yee *yee, dvi__accumulator *sum);
 void dvi__yee_largest_of_all(const dvi__yee *yee, int count, double *number);
 
-/* A sum of many terms, some of which wait until they are added at once. */
-typedef struct dvi__yee_sum {
-  dvi__accumulator sum;
-  int count;
-  double term[DVI__SUM_TERMS];
-} dvi__yee_sum;
-
-static inline void dvi__yee_add(dvi__yee_sum *s, double term)
-{
-  s->term[s->count++] = term;
-  if (s->count < DVI__SUM_TERMS) return;
-  dvi__accumulate_terms(&s->sum, s->term);
-  s->count = 0;
-}
-double dvi__yee_sum_up(const dvi__yee *yee, dvi__yee_sum *sum);
-
 #endif
