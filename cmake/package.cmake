@@ -28,6 +28,11 @@ endif()
 if(TARGET dvi_hdf5)
   install(TARGETS dvi_hdf5 DESTINATION "${CMAKE_INSTALL_LIBDIR}/dvi")
 endif()
+if(TARGET dvi_petsc_module)
+  set_target_properties(dvi_petsc_module PROPERTIES INSTALL_RPATH "$ORIGIN/.."
+                                                    INSTALL_RPATH_USE_LINK_PATH ON)
+  install(TARGETS dvi_petsc_module DESTINATION "${CMAKE_INSTALL_LIBDIR}/dvi")
+endif()
 file(GLOB scenes CONFIGURE_DEPENDS apps/scenes/*.yaml apps/scenes/*/*.yaml)
 install(FILES ${scenes} DESTINATION "${CMAKE_INSTALL_DATADIR}/dvi/scenes")
 # The pages keep their folders, and everything that they link to is installed with them.

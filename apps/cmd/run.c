@@ -13,6 +13,7 @@
 #include "load/density.h"
 #include "load/open.h"
 #include "cli/options.h"
+#include "module/ranks.h"
 #include "cli/outputs.h"
 #include "watch/field_run.h"
 #include "watch/recorder.h"
@@ -245,6 +246,33 @@ static int run_march(run_request *request, const problem *scene)
   return code == DONE ? field_run(request, scene) : code;
 }
 
+/* Several processes share a field, which leapfrog alone advances, and write rows alone. */
+static int check_shared(const run_request *request, const problem *scene)
+{
+  const struct {
+    const char *option, *given;
+  } whole[] = {{"pvd", request->pvd},
+               {"map", request->map},
+               {"checkpoint", request->checkpoint},
+               {"resume", request->resume}};
+  const char *method = request->method != NULL ? request->method : scene->method;
+  if (ranks_count() == 1) return DONE;
+  if (scene->scene == NULL || !dvi_scene_marches(scene->scene, "leapfrog"))
+    return usage_error("run: %d processes share a scene of waves or of Maxwell's field on a mesh, "
+                       "and %s is none; leave mpirun out",
+                       ranks_count(), scene->name);
+  if (method == NULL || strcmp(method, "leapfrog") != 0)
+    return usage_error("run: %d processes share leapfrog alone, not %s; give --method leapfrog, or "
+                       "leave mpirun out",
+                       ranks_count(), method != NULL ? method : "another method");
+  for (size_t i = 0; i < sizeof whole / sizeof *whole; i++)
+    if (whole[i].given != NULL)
+      return usage_error("run: --%s needs the whole mesh, which %d processes share; leave it out, "
+                         "or mpirun",
+                         whole[i].option, ranks_count());
+  return DONE;
+}
+
 /* Run the problem of a command line that has been checked. */
 static int run_problem(run_request *request, const char *name)
 {
@@ -252,6 +280,11 @@ static int run_problem(run_request *request, const char *name)
   signals_end(true, ended_before);
   int code = open_any(name, &request->settings, &scene);
   if (code != DONE) return code;
+  code = check_shared(request, scene);
+  if (code != DONE) {
+    problem_destroy(&scene);
+    return code;
+  }
   if (dvi_scene_marches(scene->scene, request->method)) {
     code = run_march(request, scene);
     problem_destroy(&scene);
@@ -523,16 +556,26 @@ static const command_line command = {
     .details = details,
 };
 
-int run_command(int argc, char **argv)
+static int run_alone(int argc, char **argv)
 {
   run_request r = {.out = "-", .h = (double)NAN, .t_end = (double)NAN, .tolerance = (double)NAN};
   const char *name;
   int code;
   if (!options_parse(&command, argc, argv, &r, &name, &code)) return code;
-  code = run_check_request(&r, name);
+  if (!ranks_is_first()) {
+    r.out = "-";
+    r.plot = NULL;
+  }
+  code = ranks_agree(run_check_request(&r, name));
   if (code != DONE) return code;
   r.command = command_spelled("run", argc, argv);
   code = run_problem(&r, name);
   free(r.command);
   return code;
+}
+
+int run_command(int argc, char **argv)
+{
+  const int code = ranks_begin();
+  return ranks_end(code == DONE ? run_alone(argc, argv) : code);
 }

@@ -18,6 +18,7 @@
 #include "csv/balance.h"
 #include "entry.h"
 #include "cli/file.h"
+#include "module/ranks.h"
 
 /* The message of a scene's error has its line and a caret below the line. */
 enum { MESSAGE_SIZE = 2048 };
@@ -194,8 +195,12 @@ int scene_open(const char *path, const words *settings, problem **scene)
   dvi_scene *read = NULL;
   *scene = NULL;
   if (is_folder(path)) return refuse_folder(path);
-  const dvi_status status = dvi_scene_read(path, settings->count, settings->word, &read, message,
-                                           sizeof message);
+  const dvi_scene_division division = {.size = sizeof division, .divide = ranks_divide};
+  const dvi_status status =
+      ranks_count() > 1
+          ? dvi_scene_read_share(path, &division, settings->count, settings->word, &read, message,
+                                 sizeof message)
+          : dvi_scene_read(path, settings->count, settings->word, &read, message, sizeof message);
   return scene_exit_code(path, status, message, read, scene);
 }
 

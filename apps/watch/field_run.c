@@ -12,6 +12,7 @@
 #include "load/density.h"
 #include "load/elastic.h"
 #include "load/open_march.h"
+#include "module/ranks.h"
 #include "store/row_output.h"
 #include "watch/field_columns.h"
 #include "watch/field_map.h"
@@ -41,6 +42,7 @@ typedef struct journey {
   long unit_count;          /* units from t = 0 */
   bool row_written, beyond; /* a bound, which was told */
   const volatile sig_atomic_t *caught;
+  int signal; /* that one of the processes has caught, or 0 */
 } journey;
 
 /* ---- checks ---- */
@@ -272,6 +274,14 @@ static bool first_row_is_due(const journey *j)
   return !j->out.is_appended || start_has_row(j);
 }
 
+/* Agree with other processes whether the run goes on. A signal may have reached one of them. */
+static bool goes_on(journey *j, bool *good)
+{
+  *good = ranks_agree(*good ? DONE : FAILED) == DONE;
+  if (*good) j->signal = ranks_largest((int)*j->caught);
+  return *good && j->signal == 0;
+}
+
 static int travel(journey *j)
 {
   const run_request *r = j->request;
@@ -279,14 +289,14 @@ static int travel(journey *j)
   progress_start(&j->progress, r->final || j->out.file.stream != stdout);
   good = look(j, first_row_is_due(j));
   j->row_written = j->row_written || j->out.has_row;
-  while (good && !ended && *j->caught == 0) good = advance(j, &ended);
+  while (goes_on(j, &good) && !ended) good = advance(j, &ended);
   progress_end(&j->progress);
   if (good && !j->row_written) good = field_columns_measure(&j->columns) && write_row(j);
   good = save(j) && good;
   if (!good) return FAILED;
   tell_events(j);
   warn_of_bound(j);
-  return *j->caught == 0 ? DONE : run_interrupted(r, (int)*j->caught, dvi_march_time(j->march));
+  return j->signal == 0 ? DONE : run_interrupted(r, j->signal, dvi_march_time(j->march));
 }
 
 /* ---- files ---- */

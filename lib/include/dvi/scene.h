@@ -108,6 +108,15 @@ typedef struct dvi_scene_point {
   void *user[3];
 } dvi_scene_point;
 
+/** What replaces the mesh of a scene by the share of one process, as soon as it has been made. */
+typedef struct dvi_scene_division {
+  size_t size; /**< sizeof(dvi_scene_division) */
+  /** Cut the share out of the whole mesh: dvi_mesh_cut, or dvi_mesh_divide of <dvi/petsc.h>.
+   *  Returns DVI_OK, or the status of dvi_last_error() */
+  dvi_status (*divide)(const dvi_mesh *mesh, dvi_mesh **share, void *user);
+  void *user;
+} dvi_scene_division;
+
 /** A number high + low, with more digits than a double has. high is the double nearest to it. */
 typedef struct dvi_pair {
   double high, low;
@@ -154,6 +163,19 @@ dvi_status dvi_scene_read(const char *path, int setting_count, const char *const
 dvi_status dvi_scene_parse(const char *name, const char *text, size_t length, int setting_count,
                            const char *const *settings, dvi_scene **scene, char *message,
                            size_t size);
+
+/** Read the scene of a field on the share of one process, otherwise as dvi_scene_read.
+ *
+ *  All processes read the same scene. It has marches by leapfrog alone, and no system: its terms
+ *  have the number of unknowns of the share and nothing else.
+ *
+ *  @param      division  its share becomes the scene's mesh, which the scene destroys
+ *  @retval DVI_UNSUPPORTED  the scene has no field of waves or Maxwell's on a mesh, or watches a
+ *                           wave by probes
+ *  @retval (others)         as dvi_scene_read and `divide` */
+dvi_status dvi_scene_read_share(const char *path, const dvi_scene_division *division,
+                                int setting_count, const char *const *settings, dvi_scene **scene,
+                                char *message, size_t size);
 
 /** Free a scene, its system and all objects that it owns, and set the pointer to NULL. NULL is
  *  allowed. */

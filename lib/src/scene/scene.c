@@ -155,9 +155,9 @@ static bool are_there(int count, const char *const *text)
   return true;
 }
 
-dvi_status dvi_scene_parse(const char *name, const char *text, size_t length, int setting_count,
-                           const char *const *settings, dvi_scene **scene, char *message,
-                           size_t size)
+static dvi_status parse(const char *name, const char *text, size_t length,
+                        const dvi_scene_division *division, int setting_count,
+                        const char *const *settings, dvi_scene **scene, char *message, size_t size)
 {
   if (scene == NULL) return DVI_BAD_ARGUMENT;
   *scene = NULL;
@@ -169,11 +169,13 @@ dvi_status dvi_scene_parse(const char *name, const char *text, size_t length, in
     dvi__heap_free(made);
     return write_failure(message, size, DVI_NO_MEMORY, name);
   }
+  made->division = division;
   dvi__scene_settings outer = {.count = setting_count, .text = settings};
   dvi__complaint complaint = {.message = message, .size = message != NULL ? size : 0};
   dvi__ledger *const other = dvi__heap_charge(&made->ledger);
   const dvi_status status = scene_fill(made, name, text, length, &outer, &complaint);
   (void)dvi__heap_charge(other);
+  made->division = NULL;
   if (status == DVI_OK) {
     *scene = made;
     return DVI_OK;
@@ -182,6 +184,13 @@ dvi_status dvi_scene_parse(const char *name, const char *text, size_t length, in
   if (message != NULL && size > 0 && message[0] == '\0')
     return write_failure(message, size, status, name);
   return status;
+}
+
+dvi_status dvi_scene_parse(const char *name, const char *text, size_t length, int setting_count,
+                           const char *const *settings, dvi_scene **scene, char *message,
+                           size_t size)
+{
+  return parse(name, text, length, NULL, setting_count, settings, scene, message, size);
 }
 
 /* Read the text of a file, and one character more than is allowed if it is longer. The caller frees
@@ -198,8 +207,9 @@ static dvi_status read_file(const char *path, char **text, size_t *length)
   return *text == NULL ? DVI_NO_MEMORY : failed ? DVI_IO_ERROR : DVI_OK;
 }
 
-dvi_status dvi_scene_read(const char *path, int setting_count, const char *const *settings,
-                          dvi_scene **scene, char *message, size_t size)
+static dvi_status read_path(const char *path, const dvi_scene_division *division, int setting_count,
+                            const char *const *settings, dvi_scene **scene, char *message,
+                            size_t size)
 {
   char *text = NULL;
   size_t length = 0;
@@ -208,13 +218,36 @@ dvi_status dvi_scene_read(const char *path, int setting_count, const char *const
   if (path == NULL) return write_failure(message, size, DVI_BAD_ARGUMENT, "scene");
   dvi_status status = read_file(path, &text, &length);
   if (status == DVI_OK)
-    status = dvi_scene_parse(path, text, length, setting_count, settings, scene, message, size);
+    status = parse(path, text, length, division, setting_count, settings, scene, message, size);
   else if (status == DVI_IO_ERROR && message != NULL && size > 0)
     (void)snprintf(message, size, "cannot read '%s': %s", path, strerror(errno));
   else
     (void)write_failure(message, size, status, path);
   dvi__heap_free(text);
   return status;
+}
+
+dvi_status dvi_scene_read(const char *path, int setting_count, const char *const *settings,
+                          dvi_scene **scene, char *message, size_t size)
+{
+  return read_path(path, NULL, setting_count, settings, scene, message, size);
+}
+
+dvi_status dvi_scene_read_share(const char *path, const dvi_scene_division *division,
+                                int setting_count, const char *const *settings, dvi_scene **scene,
+                                char *message, size_t size)
+{
+  if (scene != NULL) *scene = NULL;
+  if (division == NULL || division->size != sizeof *division || division->divide == NULL)
+    return write_failure(message, size, DVI_BAD_ARGUMENT, "scene");
+  dvi_status status = read_path(path, division, setting_count, settings, scene, message, size);
+  if (status != DVI_OK || dvi__is_share(*scene)) return status;
+  dvi_scene_tell(*scene, "lagrangian",
+                 "several processes share fields of waves and Maxwell's on "
+                 "meshes, and this scene has none",
+                 message, size);
+  dvi_scene_destroy(scene);
+  return DVI_UNSUPPORTED;
 }
 
 void dvi_scene_destroy(dvi_scene **scene)
@@ -251,7 +284,7 @@ static void make_system_of_field(dvi_scene *scene)
 
 const dvi_system *dvi_scene_system(const dvi_scene *scene)
 {
-  if (scene == NULL) return NULL;
+  if (scene == NULL || dvi__is_share(scene)) return NULL;
   if (dvi__is_of_field(scene) && scene->q != NULL) make_system_of_field((dvi_scene *)scene);
   return scene->system;
 }

@@ -61,6 +61,7 @@ struct dvi_scene {
   dvi__complaint *complaint;
   const dvi__tree *tree;
   const dvi__scene_settings *settings; /* settings while the scene is read */
+  const dvi_scene_division *division;  /* while the scene is read, NULL for the whole mesh */
   dvi__names names;
   dvi__parameter *parameter;
   dvi__coordinate *coordinate;

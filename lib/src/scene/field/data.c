@@ -69,6 +69,18 @@ bool dvi__quantity_set(dvi_scene *scene, const dvi__quantity *of, const char *pa
   return true;
 }
 
+bool dvi__has_part_of_cells(const dvi_mesh *mesh, const char *part)
+{
+  const int n = dvi_mesh_dimension(mesh);
+  const char *name;
+  int64_t count;
+  (void)dvi_mesh_part_cells(mesh, part, n, &count);
+  if (count != 0 || dvi_mesh_share_numbers(mesh, 0) == NULL) return count > 0;
+  for (int i = 0; (name = dvi_mesh_part_name(mesh, i)) != NULL; i++)
+    if (strcmp(name, part) == 0) return dvi_mesh_part_degree(mesh, i) == n;
+  return false;
+}
+
 bool dvi__refuse_part(dvi_scene *scene, dvi__span span, const char *name, bool of_cells)
 {
   char list[160];
@@ -89,10 +101,8 @@ static bool read_material(dvi_scene *scene, const char *part, dvi__span span, co
 {
   static const char *const known[] = {"rho", "a"};
   dvi__place *place;
-  int64_t count;
-  const dvi_mesh *mesh = scene->field->mesh;
-  (void)dvi_mesh_part_cells(mesh, part, dvi_mesh_dimension(mesh), &count);
-  if (count <= 0) return dvi__refuse_part(scene, span, part, true);
+  if (!dvi__has_part_of_cells(scene->field->mesh, part))
+    return dvi__refuse_part(scene, span, part, true);
   if (!dvi__want_mapping(scene, tree, "a material") ||
       !dvi__want_keys(scene, tree, "a material", 2, known))
     return false;

@@ -32,13 +32,15 @@ static bool evaluate_start(dvi_scene *scene, const dvi__place *place, double *va
 {
   const dvi_mesh *mesh = scene->field->mesh;
   const int64_t vertices = dvi_mesh_count(mesh, 0);
+  const int64_t *number = dvi_mesh_share_numbers(mesh, 0);
   const double *point = dvi_mesh_points(mesh);
   const int space = dvi_mesh_space(mesh);
   for (int64_t v = 0; v < vertices && place != NULL; v++)
     if (dvi__place_value(place, point + v * space, NULL, values + v) != 0 || !isfinite(values[v]))
       return dvi__scene_refuse(scene, dvi__tree_find(scene->tree, "initial")->span,
-                               "the start is not finite at vertex %lld, (%g, %g)", (long long)v,
-                               point[v * space], space > 1 ? point[v * space + 1] : 0.0);
+                               "the start is not finite at vertex %lld, (%g, %g)",
+                               (long long)(number != NULL ? number[v] : v), point[v * space],
+                               space > 1 ? point[v * space + 1] : 0.0);
   return true;
 }
 
@@ -126,6 +128,22 @@ bool dvi__is_mechanical_column(const dvi_scene *scene, const char *name)
 
 const char *const dvi__field_word[DVI__FIELD_WORDS] = {"wave", "maxwell", "elastic"};
 
+dvi_status dvi__declare_system(dvi_scene *scene)
+{
+  const double damping = scene->terms.damping;
+  dvi_field *field = scene->field->field;
+  dvi_status status = DVI_OK;
+  if (dvi__is_share(scene)) {
+    int64_t unknowns;
+    (void)dvi_field_unknowns(field, &unknowns);
+    scene->terms = (dvi_system_terms){.dimension = (int)unknowns};
+  } else {
+    status = dvi_field_system_terms(field, &scene->terms);
+  }
+  scene->terms.damping = damping;
+  return status;
+}
+
 static dvi_status make_field(dvi_scene *scene)
 {
   struct dvi__scene_field *f = scene->field;
@@ -142,11 +160,7 @@ static dvi_status make_field(dvi_scene *scene)
       .potential = f->density.density != NULL ? &f->density : NULL,
   };
   if (status == DVI_OK) status = dvi_wave_create(&terms, &f->field);
-  if (status != DVI_OK) return status;
-  const double damping = scene->terms.damping;
-  status = dvi_field_system_terms(f->field, &scene->terms);
-  scene->terms.damping = damping;
-  return status;
+  return status == DVI_OK ? dvi__declare_system(scene) : status;
 }
 
 static bool make_wave(dvi_scene *scene, const dvi__tree *section)

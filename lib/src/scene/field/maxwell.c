@@ -81,11 +81,12 @@ static bool set_walls(dvi_scene *scene, draft *d)
 
 /* ---- sources ---- */
 
-/* Refuse a point that lies in no cell. */
+/* Refuse a point that lies in no cell. Of a share the field finds that out, with all others. */
 static bool is_inside(dvi_scene *scene, const double *point, dvi__span span, const char *what)
 {
   int cell = 0;
   double weight[DVI_MESH_DIMENSION_MAX + 1];
+  if (dvi__is_share(scene)) return true;
   const dvi_status status = dvi_mesh_locate(scene->field->mesh, 1, point, &cell, weight);
   if (status != DVI_OK)
     return dvi__complain(scene->complaint, status, span, "%s", dvi_last_error());
@@ -280,12 +281,7 @@ static dvi_status make_field(dvi_scene *scene, draft *d)
   d->terms.probe = d->probe;
   d->terms.probes = f->maxwell->probes;
   if (status == DVI_OK) status = dvi_maxwell_create(&d->terms, &f->field);
-  if (status == DVI_OK) {
-    const double damping = scene->terms.damping;
-    status = dvi_field_system_terms(f->field, &scene->terms);
-    scene->terms.damping = damping;
-  }
-  return status;
+  return status == DVI_OK ? dvi__declare_system(scene) : status;
 }
 
 bool dvi__maxwell_make(dvi_scene *scene, const dvi__tree *section)

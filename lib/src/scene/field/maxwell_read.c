@@ -119,9 +119,7 @@ void dvi__maxwell_form(const struct dvi__scene_field *field, bool is_B, const do
 static bool part_is_there(dvi_scene *scene, const char *part, dvi__span span)
 {
   const dvi_mesh *mesh = scene->field->mesh;
-  int64_t count = strcmp(part, "all") == 0;
-  if (mesh != NULL) (void)dvi_mesh_part_cells(mesh, part, dvi_mesh_dimension(mesh), &count);
-  if (count > 0) return true;
+  if (mesh != NULL ? dvi__has_part_of_cells(mesh, part) : strcmp(part, "all") == 0) return true;
   if (mesh != NULL) return dvi__refuse_part(scene, span, part, true);
   return dvi__scene_refuse(scene, span, "a grid has no part '%s' of cells; it has all", part);
 }
@@ -289,7 +287,7 @@ static void add_other_sides(dvi_scene *scene, int walls, const dvi__scene_wall *
     for (int i = 0; i < walls; i++)
       is_given = is_given || strcmp(wall[i].part, dvi__grid_side[side]) == 0;
     if (mesh != NULL) (void)dvi_mesh_part_cells(mesh, dvi__grid_side[side], 0, &count);
-    if (is_given || count <= 0) continue;
+    if (is_given || count < 0 || (count == 0 && !dvi__is_share(scene))) continue;
     m->wall[m->walls] = *whole;
     m->wall[m->walls++].part = dvi__grid_side[side];
   }

@@ -139,6 +139,28 @@ static bool name_place(dvi_scene *scene, const dvi__tree *section)
   return true;
 }
 
+/* Let the share of this process replace the mesh. */
+static bool take_share(dvi_scene *scene, const dvi__tree *section)
+{
+  struct dvi__scene_field *f = scene->field;
+  dvi_mesh *share = NULL;
+  if (scene->division == NULL) return true;
+  if (f->mesh == NULL || dvi__has_density(scene) || dvi__is_elastic(scene))
+    return dvi__complain(scene->complaint, DVI_UNSUPPORTED, section->span,
+                         "several processes share fields of waves and Maxwell's on meshes, and no "
+                         "grids of yee, densities and solids");
+  if (!report(scene, section, scene->division->divide(f->mesh, &share, scene->division->user)))
+    return false;
+  dvi_mesh_destroy(&f->mesh);
+  f->mesh = share;
+  return true;
+}
+
+bool dvi__is_share(const dvi_scene *scene)
+{
+  return scene->field != NULL && dvi_mesh_share_numbers(scene->field->mesh, 0) != NULL;
+}
+
 /* A density takes the mesh, and the scene has no field of this room. */
 static bool hand_over(dvi_scene *scene, const dvi__tree *section)
 {
@@ -161,6 +183,7 @@ bool dvi__read_mesh(dvi_scene *scene, const dvi__tree *section)
   if (!dvi__maxwell_begin(scene) || !dvi__elastic_begin(scene)) return false;
   if (!(generator != NULL ? generate(scene, section, generator) : read_file(scene, section, file)))
     return false;
+  if (!take_share(scene, section)) return false;
   if (dvi__has_density(scene)) return hand_over(scene, section);
   if (scene->field->mesh != NULL) {
     scene->field->space = dvi_mesh_space(scene->field->mesh);

@@ -58,6 +58,10 @@ bool dvi__read_probes(dvi_scene *scene, const dvi__tree *section)
   if (scene->density != NULL) return dvi__density_read_probes(scene, section);
   if (dvi__is_elastic(scene)) return dvi__elastic_read_probes(scene, section);
   if (scene->field->maxwell != NULL) return dvi__maxwell_read_probes(scene, section);
+  if (dvi__is_share(scene))
+    return dvi__complain(scene->complaint, DVI_UNSUPPORTED, section->span,
+                         "probes of a wave need the whole mesh, and this is the share of one of "
+                         "several processes");
   if (!dvi__want_mapping(scene, section, "probes")) return false;
   struct dvi__probe *probe = dvi__arena_take(&scene->arena, (size_t)section->count + 1,
                                              sizeof *probe);

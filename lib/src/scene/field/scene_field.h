@@ -94,6 +94,12 @@ bool dvi__read_by_part(dvi_scene *scene, const dvi__tree *section, dvi__part_rea
 /* Read materials by part. "all" is read first, so that parts replace it. */
 bool dvi__read_all_first(dvi_scene *scene, const dvi__tree *section, dvi__part_reader *read);
 
+/* Tell if a mesh has a part of cells, of which a share may have none. */
+bool dvi__has_part_of_cells(const dvi_mesh *mesh, const char *part);
+
+/* Declare the mechanical system of the field. A share has none, and only counts its unknowns. */
+dvi_status dvi__declare_system(dvi_scene *scene);
+
 /* Refuse the name of a part that the mesh has not, and list those that it has. */
 bool dvi__refuse_part(dvi_scene *scene, dvi__span span, const char *name, bool of_cells);
 

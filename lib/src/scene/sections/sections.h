@@ -89,6 +89,9 @@ bool dvi__density_read_probes(dvi_scene *scene, const dvi__tree *section);
 const dvi_mesh *dvi__density_mesh(dvi_scene *scene);
 void dvi__scene_density_clear(dvi_scene *scene);
 
+/* Tell if the scene's mesh is the share of one of several processes. */
+bool dvi__is_share(const dvi_scene *scene);
+
 /* Do so for a solid (scene/elastic): note whether the field is one, before the mesh is read, check
  * the mesh, name a place, read the sections that other fields have, too, and refuse those that only
  * others have. */

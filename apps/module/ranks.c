@@ -1,0 +1,186 @@
+#define _POSIX_C_SOURCE 200809L
+#include "module/ranks.h"
+
+#include <dlfcn.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cli/command.h"
+
+static const char module_name[] = "dvi_petsc.so", symbol_name[] = "dvi_petsc";
+
+static bool is_echo;               /* this process fails because another one did */
+static const petsc_module *module; /* NULL in a process that is alone */
+static int own_rank, rank_count = 1;
+static FILE *kept;      /* what a process prints that is not the first one */
+static int spoken = -1; /* its standard error */
+
+/* ---- the start ---- */
+
+static int number_of(const char *name)
+{
+  const char *text = getenv(name);
+  return text != NULL ? (int)strtol(text, NULL, 10) : -1;
+}
+
+/* Find by the environment how many processes were started, and which one this is: by Open MPI, by
+ * MPICH and others, by Slurm with PMIx or PMI2. */
+static int expected_count(int *rank)
+{
+  static const char *const starter[][3] = {
+      {"OMPI_COMM_WORLD_SIZE", "OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_RANK"},
+      {"PMI_SIZE", "PMI_RANK", "PMI_RANK"},
+      {"SLURM_NTASKS", "SLURM_PROCID", "PMIX_RANK"}};
+  for (size_t i = 0; i < sizeof starter / sizeof *starter; i++) {
+    const int count = number_of(starter[i][0]);
+    if (count < 2 || getenv(starter[i][2]) == NULL) continue;
+    *rank = number_of(starter[i][1]);
+    return count;
+  }
+  return 1;
+}
+
+/* The first process says why, and the others end in silence. */
+static int refuse(int rank, int count, const char *reason, const char *remedy)
+{
+  if (rank > 0) exit(DONE);
+  return usage_error("%d processes were started, and %s; %s, or leave mpirun out", count, reason,
+                     remedy);
+}
+
+static int refuse_missing(int rank, int count)
+{
+  char reason[512];
+  (void)snprintf(reason, sizeof reason, "this dvi has no module for them (%s)", dlerror());
+  return refuse(rank, count, reason, "build dvi with -DDVI_PETSC=ON");
+}
+
+static int refuse_count(int rank, int count, const petsc_module *found)
+{
+  char reason[64];
+  (void)snprintf(reason, sizeof reason, "MPI knows of %d", rank_count);
+  found->end();
+  rank_count = 1;
+  return refuse(rank, count, reason, "start them by the mpirun of the MPI that PETSc is linked to");
+}
+
+/* Keep what this process prints. */
+static bool keep_output(void)
+{
+  kept = tmpfile();
+  spoken = dup(STDERR_FILENO);
+  return kept != NULL && spoken >= 0 && fflush(stdout) == 0 &&
+         freopen("/dev/null", "w", stdout) != NULL && dup2(fileno(kept), STDERR_FILENO) >= 0;
+}
+
+int ranks_begin(void)
+{
+  int rank = 0;
+  const int count = expected_count(&rank);
+  if (count < 2) return DONE;
+  /* the parts of MPI that are loaded later look for its names */
+  void *library = dlopen(module_name, RTLD_NOW | RTLD_GLOBAL);
+  const petsc_module *found = library != NULL ? dlsym(library, symbol_name) : NULL;
+  if (found == NULL) return refuse_missing(rank, count);
+  if (!found->start(&own_rank, &rank_count)) {
+    complain("MPI and PETSc could not be started");
+    return FAILED;
+  }
+  if (rank_count != count) return refuse_count(rank, count, found);
+  module = found;
+  if (own_rank == 0 || keep_output()) return DONE;
+  complain("out of memory");
+  return FAILED;
+}
+
+/* ---- the run ---- */
+
+int ranks_count(void)
+{
+  return rank_count;
+}
+
+bool ranks_is_first(void)
+{
+  return own_rank == 0;
+}
+
+/* Print what has been kept. */
+static void speak(void)
+{
+  char text[1024];
+  if (kept == NULL) return;
+  rewind(kept);
+  for (size_t size; (size = fread(text, 1, sizeof text, kept)) > 0;) {
+    const ssize_t written = write(spoken, text, size);
+    (void)written;
+  }
+}
+
+/* End all processes, which do not wait for this one where it waits for them. */
+static void abandon(int code)
+{
+  speak();
+  module->abandon(code);
+}
+
+static int largest(int number, bool has_failed)
+{
+  int all = number;
+  if (module != NULL && !module->largest(number, has_failed, &all))
+    abandon(has_failed ? number : FAILED);
+  return all;
+}
+
+int ranks_largest(int number)
+{
+  return largest(number, false);
+}
+
+int ranks_agree(int code)
+{
+  const int worst = largest(code, code != DONE);
+  is_echo = code == DONE && worst != DONE;
+  return code != DONE ? code : worst;
+}
+
+dvi_status ranks_divide(const dvi_mesh *mesh, dvi_mesh **share, void *user)
+{
+  (void)user;
+  return module->divide(mesh, share);
+}
+
+void ranks_tell(int rank, int degree, mesh_division *division)
+{
+  module->tell(rank, degree, division);
+}
+
+/* ---- the end ---- */
+
+/* Return the process whose failure is the others' reason, or -1. */
+static int find_culprit(const rank_end *all)
+{
+  int failed = -1;
+  for (int r = rank_count - 1; r >= 0; r--)
+    if (all[r].code != DONE && (!all[r].is_echo || failed < 0)) failed = r;
+  return failed;
+}
+
+int ranks_end(int code)
+{
+  if (module == NULL) return code;
+  const rank_end own = {.code = code,
+                        .is_echo = is_echo || strstr(dvi_last_error(), "whose sentence") != NULL};
+  rank_end *all = calloc((size_t)rank_count, sizeof *all);
+  (void)fflush(stderr);
+  (void)fflush(stdout);
+  if (all == NULL || !module->meet(&own, all)) abandon(code != DONE ? code : FAILED);
+  const int culprit = all != NULL ? find_culprit(all) : -1;
+  if (culprit == own_rank) speak();
+  if (culprit >= 0) code = all[culprit].code;
+  free(all);
+  module->end();
+  return ranks_is_first() ? code : DONE;
+}

@@ -1,0 +1,37 @@
+/** Processes that mpirun or srun started, which share the mesh of one run.
+ *
+ *  The first one speaks for all. What the others print is kept, and is seen if one of them alone
+ *  fails. In a process that is alone these functions do nothing. */
+#ifndef RANKS_H
+#define RANKS_H
+#include <dvi/mesh.h>
+#include <stdbool.h>
+
+#include "petsc/petsc_module.h"
+
+/** Join the others, if there are any. Returns DONE, or complains and returns the exit code. */
+int ranks_begin(void);
+
+/** Return the number of processes, 1 without others. */
+int ranks_count(void);
+
+/** Tell if this process is the first one, which writes files. */
+bool ranks_is_first(void);
+
+/** Return the largest number of all processes, none of which has failed. */
+int ranks_largest(int number);
+
+/** Agree with the others on an exit code. Returns this process's own if that is not DONE, and
+ *  otherwise the largest one. */
+int ranks_agree(int code);
+
+/** Divide a mesh, as the callback of dvi_scene_division. */
+dvi_status ranks_divide(const dvi_mesh *mesh, dvi_mesh **share, void *user);
+
+/** Give the share of process `rank`, of forms of a degree. Called by all processes. */
+void ranks_tell(int rank, int degree, mesh_division *division);
+
+/** Leave the others, with this process's exit code. Returns that of the whole: it is not DONE in
+ *  the first process alone. Does not return if the others cannot be reached any more. */
+int ranks_end(int code);
+#endif

@@ -1,0 +1,53 @@
+/** The module dvi_petsc, by which the processes that mpirun or srun started share a mesh.
+ *
+ *  The command loads it when there are several processes: PETSc and MPI take longer to start than
+ *  most runs, and only a command that loads them falls under the licence of Debian's PETSc. */
+#ifndef PETSC_MODULE_H
+#define PETSC_MODULE_H
+#include <dvi/mesh.h>
+#include <stdbool.h>
+
+/** The share of a process: its cells of highest degree, and what it receives from others. */
+typedef struct mesh_division {
+  const char *partitioner;
+  int64_t owned, ghosts; /**< cells */
+  int64_t bytes_in;      /**< of a form, once */
+  int neighbours;
+} mesh_division;
+
+/** What a process has at its end. */
+typedef struct rank_end {
+  int code;     /**< its exit code */
+  bool is_echo; /**< it only fails because another one did */
+} rank_end;
+
+/** The functions of the module. */
+typedef struct petsc_module {
+  /** Start MPI and PETSc, whose handlers of signals are left out. Returns whether it worked. */
+  bool (*start)(int *rank, int *count);
+
+  /** Divide a mesh among all processes. The share is for dvi_mesh_destroy before the end. One mesh
+   *  can be divided at a time. */
+  dvi_status (*divide)(const dvi_mesh *mesh, dvi_mesh **share);
+
+  /** Give the division of process `rank`, with the bytes that a form of a degree receives. Called
+   *  by all processes. */
+  void (*tell)(int rank, int degree, mesh_division *division);
+
+  /** Find the largest of all processes' numbers. A process that has failed waits for the others for
+   *  some seconds only, because they may wait for it elsewhere. Returns whether they have come. */
+  bool (*largest)(int number, bool has_failed, int *all);
+
+  /** Give the ends [count] of all processes. Waits and returns likewise. */
+  bool (*meet)(const rank_end *own, rank_end *all);
+
+  /** Release the division, and end PETSc and MPI. */
+  void (*end)(void);
+
+  /** End all processes at once, with an exit code. */
+  void (*abandon)(int code);
+} petsc_module;
+
+/** The module's only symbol. */
+extern const petsc_module dvi_petsc __attribute__((visibility("default")));
+#endif

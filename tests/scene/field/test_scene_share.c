@@ -1,0 +1,146 @@
+/* Scenes on shares of their mesh: marches have the bits of the whole mesh, and what needs the whole
+ * mesh is refused. */
+#include <dvi/scene.h>
+#include <string.h>
+
+#include "support/field/generated.h"
+#include "support/field/ranks.h"
+#include "support/files.h"
+#include "support/suite.h"
+
+enum { PROCESSES = 3, SEEN = 8, MESSAGE_SIZE = 512 };
+
+/* A scene's file, and what each process observes. */
+typedef struct shared_scene {
+  const char *path;
+  dvi_status status[PROCESSES];
+  double seen[PROCESSES][SEEN];
+  char message[PROCESSES][MESSAGE_SIZE];
+} shared_scene;
+
+/* `user` is the share. */
+static dvi_status take(const dvi_mesh *mesh, dvi_mesh **share, void *user)
+{
+  (void)mesh;
+  *share = dvi_mesh_share(user);
+  return DVI_OK;
+}
+
+static dvi_status observe(const dvi_scene *scene, double *seen)
+{
+  dvi_march *march = NULL;
+  dvi_status status = dvi_scene_march_create(scene, NULL, &march);
+  if (status == DVI_OK) status = dvi_march_advance(march, 0.7);
+  for (int i = 0; status == DVI_OK && dvi_march_observable(march, i) != NULL; i++)
+    status = dvi_march_observe(march, i, seen + i);
+  dvi_march_destroy(&march);
+  return status;
+}
+
+static void read_share(const dvi_mesh *share, int rank, void *user)
+{
+  shared_scene *s = user;
+  dvi_scene *scene = NULL;
+  const dvi_scene_division division = {
+      .size = sizeof division, .divide = take, .user = (dvi_mesh *)share};
+  s->status[rank] = dvi_scene_read_share(s->path, &division, 0, NULL, &scene, s->message[rank],
+                                         MESSAGE_SIZE);
+  if (s->status[rank] != DVI_OK) return;
+  ck_assert_ptr_null(dvi_scene_system(scene));
+  s->status[rank] = observe(scene, s->seen[rank]);
+  dvi_scene_destroy(&scene);
+}
+
+/* Read a scene on all shares of a box of 4*3*2 cells. */
+static void read_shares(const char *text, shared_scene *s)
+{
+  enum { CELLS = 24 };
+  const dvi_generator_options options = {.cells = {4, 3, 2}};
+  dvi_mesh *mesh = generated("box", options);
+  int owner[CELLS];
+  for (int c = 0; c < CELLS; c++) owner[c] = c % PROCESSES;
+  s->path = path_in_folder("share.yaml");
+  write_bytes(s->path, (const unsigned char *)text, strlen(text));
+  run_ranks(mesh, PROCESSES, owner, read_share, s);
+  dvi_mesh_destroy(&mesh);
+}
+
+#define MAXWELL                                                                  \
+  "mesh: {generator: box, cells: [4, 3, 2]}\nfield: maxwell\nmethod: leapfrog\n" \
+  "step: {fraction: 0.5}\nuntil: 1\n"
+#define WAVE                                                                  \
+  "mesh: {generator: box, cells: [4, 3, 2]}\nfield: wave\nmethod: leapfrog\n" \
+  "step: {fraction: 0.5}\nuntil: 1\ninitial: {u: x*(1 - y)}\n"
+
+/* All processes observe what one observes on the whole mesh. */
+static void check_observed(const char *text)
+{
+  shared_scene s = {.path = NULL};
+  double whole[SEEN] = {0};
+  dvi_scene *scene = NULL;
+  read_shares(text, &s);
+  ck_assert_msg(dvi_scene_read(s.path, 0, NULL, &scene, s.message[0], MESSAGE_SIZE) == DVI_OK, "%s",
+                s.message[0]);
+  ck_assert_int_eq(observe(scene, whole), DVI_OK);
+  dvi_scene_destroy(&scene);
+  for (int r = 0; r < PROCESSES; r++) {
+    ck_assert_msg(s.status[r] == DVI_OK, "%s", s.message[r]);
+    for (int i = 0; i < SEEN; i++) ck_assert_double_eq(s.seen[r][i], whole[i]);
+  }
+}
+
+START_TEST(marches_have_the_bits_of_the_whole_mesh)
+{
+  check_observed(WAVE "boundary: fixed\nmaterials: {all: {rho: 1 + x, a: 1 + y}}\n");
+  check_observed(MAXWELL "materials: {all: {eps: 1 + x, sigma: 0.2}}\n"
+                         "boundary: {boundary: pec, left: absorbing}\n"
+                         "initial: {E: [y*(1 - y), 0, x]}\n"
+                         "sources: {ring: {at: [0.5, 0.5, 0.5], current: [0, 0, sin(9*t)]}}\n"
+                         "probes: {e: {of: E, at: [0.3, 0.4, 0.5], along: [1, 0.2, 0]}}\n");
+}
+END_TEST
+
+static void check_refused(const char *text, dvi_status status, const char *words)
+{
+  shared_scene s = {.path = NULL};
+  read_shares(text, &s);
+  for (int r = 0; r < PROCESSES; r++) {
+    ck_assert_int_eq(s.status[r], status);
+    if (words != NULL) ck_assert_msg(strstr(s.message[r], words) != NULL, "%s", s.message[r]);
+  }
+}
+
+START_TEST(what_needs_the_whole_mesh_is_refused)
+{
+  check_refused(WAVE "boundary: fixed\nprobes: {a: {at: [0.5, 0.5, 0.5]}}\n", DVI_UNSUPPORTED,
+                "probes of a wave need the whole mesh");
+  check_refused("mesh: {generator: box, cells: [4, 3, 2]}\nfield: elastic\nmethod: avi\nuntil: 1\n",
+                DVI_UNSUPPORTED, "no grids of yee, densities and solids");
+  check_refused("coordinates: {q: scalar}\nlagrangian: q'^2/2\ninitial: {q: 1}\nmethod: verlet\n"
+                "step: 0.1\nuntil: 1\n",
+                DVI_UNSUPPORTED, "this scene has none");
+}
+END_TEST
+
+START_TEST(a_scene_needs_a_division)
+{
+  dvi_scene *scene;
+  char message[MESSAGE_SIZE];
+  const dvi_scene_division none = {.size = sizeof none}, old = {.size = 1, .divide = take};
+  ck_assert_int_eq(dvi_scene_read_share("a.yaml", NULL, 0, NULL, &scene, message, MESSAGE_SIZE),
+                   DVI_BAD_ARGUMENT);
+  ck_assert_ptr_null(scene);
+  ck_assert_int_eq(dvi_scene_read_share("a.yaml", &none, 0, NULL, &scene, NULL, 0),
+                   DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_scene_read_share("a.yaml", &old, 0, NULL, &scene, NULL, 0),
+                   DVI_BAD_ARGUMENT);
+}
+END_TEST
+
+SUITE(scene_share)
+{
+  tcase_add_checked_fixture(tests, make_folder, remove_folder);
+  tcase_add_test(tests, marches_have_the_bits_of_the_whole_mesh);
+  tcase_add_test(tests, what_needs_the_whole_mesh_is_refused);
+  tcase_add_test(tests, a_scene_needs_a_division);
+}
