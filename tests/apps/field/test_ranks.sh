@@ -93,7 +93,8 @@ grep -q '^shares: 324 cells among 3 processes by [a-z]*, 10[0-9] to 1[0-9]* each
   wrong "explain: $(cat out.txt)"
 awk -F, 'NR > 1 { cells += $3
     wrong += !($4 > 0 && $5 == 2 && $6 == 2 && $7 > 0 && $7 % 8 == 0) }
-  END { exit !(NR == 4 && cells == 324 && !wrong) }' shares.csv || wrong "explain: $(cat shares.csv)"
+  END { exit !(NR == 4 && cells == 324 && !wrong) }' shares.csv ||
+  wrong "explain: $(cat shares.csv)"
 
 # refused CODE WORDS ARGUMENT...: processes end with the code, and one sentence.
 refused() {
