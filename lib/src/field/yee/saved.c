@@ -71,7 +71,7 @@ int dvi__yee_saved_charge(const dvi__yee *y, int j, int k, dvi__yee_piece *piece
 {
   const int *rows = y->own[1], *planes = y->own[2], nodes = y->axis[0].nodes;
   *piece = (dvi__yee_piece){NULL, (size_t)nodes};
-  if (dvi__yee_owns(y, (const int[]){0, j, k}))
+  if (y->charge != NULL && dvi__yee_owns(y, (const int[]){0, j, k}))
     piece->x = y->charge + ((ptrdiff_t)(k - planes[0]) * (rows[1] - rows[0]) + j - rows[0]) * nodes;
   return 1;
 }
