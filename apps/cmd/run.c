@@ -13,6 +13,7 @@
 #include "load/density.h"
 #include "load/open.h"
 #include "cli/options.h"
+#include "load/share.h"
 #include "module/ranks.h"
 #include "cli/outputs.h"
 #include "watch/field_run.h"
@@ -246,24 +247,7 @@ static int run_march(run_request *request, const problem *scene)
   return code == DONE ? field_run(request, scene) : code;
 }
 
-/* Processes share leapfrog, and of solids avi and verlet. */
-static int check_shared_method(const problem *scene, const char *method)
-{
-  const bool is_solid = scene->scene != NULL && dvi_scene_elastic(scene->scene) != NULL;
-  if (scene->scene == NULL || !(is_solid || dvi_scene_marches(scene->scene, "leapfrog")))
-    return usage_error("run: %d processes share a scene of waves, of Maxwell's field or of a solid "
-                       "on a mesh, and %s is none; leave mpirun out",
-                       ranks_count(), scene->name);
-  if (method != NULL &&
-      (is_solid ? dvi_scene_marches(scene->scene, method) : strcmp(method, "leapfrog") == 0))
-    return DONE;
-  return usage_error("run: %d processes share %s alone, not %s; give --method %s, or leave mpirun "
-                     "out",
-                     ranks_count(), is_solid ? "avi and verlet" : "leapfrog",
-                     method != NULL ? method : "another method", is_solid ? "avi" : "leapfrog");
-}
-
-/* Several processes share a field, and write rows alone. */
+/* Several processes write rows alone. */
 static int check_shared(const run_request *request, const problem *scene)
 {
   const struct {
@@ -272,9 +256,8 @@ static int check_shared(const run_request *request, const problem *scene)
                {"map", request->map},
                {"checkpoint", request->checkpoint},
                {"resume", request->resume}};
-  const char *method = request->method != NULL ? request->method : scene->method;
   if (ranks_count() == 1) return DONE;
-  const int code = check_shared_method(scene, method);
+  const int code = share_check("run", scene, request->method, true);
   if (code != DONE) return code;
   for (size_t i = 0; i < sizeof whole / sizeof *whole; i++)
     if (whole[i].given != NULL)

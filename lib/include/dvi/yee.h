@@ -194,8 +194,9 @@ extern "C" {
  *
  *  On a divided grid the values of forms are those of this process, numbered as on a grid of its
  *  own boxes and nodes, and observables are those of the whole grid. All have the bits of one
- *  process. A saved state is that of this process, for the same one of as many. After processes
- *  could not speak with each other, a march must be started again, or loaded.
+ *  process. A saved state is that of the whole grid, the same bytes for any division, and each
+ *  process takes its part of it. The first process alone writes files, and all read them. After
+ *  processes could not speak with each other, a march must be started again, or loaded.
  *
  *  @retval DVI_BAD_ARGUMENT     an argument is not as described: axes, ends, media, places, or a
  *                               step that is not stable. dvi_last_error() has the bound and its

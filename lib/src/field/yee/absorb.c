@@ -101,6 +101,13 @@ static const dvi__yee_wall *walls_of(const dvi__yee *y, int c, int j, int k, int
   return y->wall + first[0];
 }
 
+int64_t dvi__yee_count_walls(const dvi__yee *y, int c, int j, int k)
+{
+  int64_t count;
+  (void)walls_of(y, c, j, k, &count);
+  return count;
+}
+
 void dvi__yee_keep_before(const dvi__yee *y, int c, int j, int k, const double *e, double *before)
 {
   int64_t count;

@@ -96,6 +96,11 @@ void dvi__yee_clear_planes(dvi__yee *y)
 
 /* ---- failures ---- */
 
+int dvi__yee_processes(const dvi__yee *y)
+{
+  return y->planes != NULL ? y->planes->ranks.count : 1;
+}
+
 dvi_status dvi__yee_check_ranks(const dvi__yee *y)
 {
   if (y->planes == NULL || y->planes->failed == 0) return DVI_OK;
@@ -104,23 +109,38 @@ dvi_status dvi__yee_check_ranks(const dvi__yee *y)
                    y->planes->ranks.rank, y->planes->ranks.count, y->planes->failed);
 }
 
-void dvi__yee_begin_ranks(const dvi__yee *y)
+int dvi__yee_begin_ranks(const dvi__yee *y)
 {
+  const int failed = y->planes != NULL ? y->planes->failed : 0;
   if (y->planes != NULL) y->planes->failed = 0;
+  return failed;
+}
+
+void dvi__yee_lose_ranks(const dvi__yee *y, int failure)
+{
+  if (failure != 0) y->planes->failed = failure;
 }
 
 dvi_status dvi__yee_agree(const dvi__yee *y, dvi_status status)
 {
-  double failed = status != DVI_OK;
+  double extreme[2] = {status, -(double)status}; /* failures have numbers above or below 0 */
   if (y->planes == NULL) return status;
-  dvi__yee_largest_of_all(y, 1, &failed);
-  if (status != DVI_OK) return status;
-  DVI_TRY(dvi__yee_check_ranks(y));
-  return failed == 0
-             ? DVI_OK
-             : dvi__fail(DVI_CALLBACK_FAILED,
-                         "yee: another one of %d processes failed, whose sentence tells why",
-                         y->planes->ranks.count);
+  dvi__yee_largest_of_all(y, 2, extreme);
+  const dvi_status reached = dvi__yee_check_ranks(y);
+  if (reached != DVI_OK) return status != DVI_OK ? status : reached;
+  const dvi_status agreed = (dvi_status)(extreme[1] > 0 ? -extreme[1] : extreme[0]);
+  if (status != DVI_OK || agreed == DVI_OK) return agreed;
+  return dvi__fail(agreed, "yee: another one of %d processes failed, whose sentence tells why",
+                   y->planes->ranks.count);
+}
+
+dvi_status dvi__yee_agree_anew(const void *self, dvi_status status)
+{
+  const dvi__yee *y = self;
+  const int lost = dvi__yee_begin_ranks(y);
+  status = dvi__yee_agree(y, status);
+  dvi__yee_lose_ranks(y, lost);
+  return status;
 }
 
 /* ---- sums ---- */
@@ -131,12 +151,25 @@ void dvi__yee_largest_of_all(const dvi__yee *y, int count, double *number)
   if (p != NULL && p->failed == 0) p->failed = p->ranks.largest(count, number, p->ranks.user);
 }
 
-double dvi__yee_sum_of_all(const dvi__yee *y, dvi__accumulator *sum)
+void dvi__yee_add_all(const dvi__yee *y, int count, int64_t *number)
 {
   dvi__yee_planes *p = y->planes;
-  if (p != NULL && p->failed == 0) {
+  if (p != NULL && p->failed == 0) p->failed = p->ranks.sum(count, number, p->ranks.user);
+}
+
+/* Halves of numbers do not overflow. */
+uint64_t dvi__yee_sum_modulo(const dvi__yee *y, uint64_t number)
+{
+  int64_t half[2] = {(int64_t)(number & UINT32_MAX), (int64_t)(number >> 32)};
+  dvi__yee_add_all(y, 2, half);
+  return (uint64_t)half[0] + ((uint64_t)half[1] << 32);
+}
+
+double dvi__yee_sum_of_all(const dvi__yee *y, dvi__accumulator *sum)
+{
+  if (y->planes != NULL) {
     dvi__accumulator_carry(sum);
-    p->failed = p->ranks.sum(DVI__SUM_NUMBERS, sum->number, p->ranks.user);
+    dvi__yee_add_all(y, DVI__SUM_NUMBERS, sum->number);
   }
   return dvi__accumulator_value(sum);
 }

@@ -391,6 +391,8 @@ dvi_status dvi__yee_make_walls(const dvi_yee_terms *terms, dvi__yee *yee);
 void dvi__yee_keep_before(const dvi__yee *yee, int c, int j, int k, const double *e,
                           double *before);
 void dvi__yee_absorb(const dvi__yee *yee, int c, int j, int k, const double *before, double *e);
+/* Return how many edges of a row of E_c are on absorbing ends, where there are any. */
+int64_t dvi__yee_count_walls(const dvi__yee *yee, int c, int j, int k);
 
 /* ---- start.c ---- */
 
@@ -484,6 +486,22 @@ void dvi__yee_keep_charge(dvi__yee *yee);
 int dvi__yee_observables(const void *yee);
 const char *dvi__yee_observable(const void *yee, int i);
 dvi_status dvi__yee_observe(const void *yee, int i, double *value);
+
+/* ---- saved.c ---- */
+
+/* Numbers of the state that follow each other. */
+typedef struct dvi__yee_piece {
+  double *x; /* NULL if another process has them */
+  size_t count;
+} dvi__yee_piece;
+
+enum { DVI__YEE_PIECES = 48 };
+
+/* Give the pieces at (j, k), which are as many on all processes, and as long: of the fields, of
+ * what was conducted, and of the sums of layers, or the charges of the start. Return their
+ * number. */
+int dvi__yee_saved(const dvi__yee *yee, int j, int k, dvi__yee_piece *piece);
+int dvi__yee_saved_charge(const dvi__yee *yee, int j, int k, dvi__yee_piece *piece);
 
 /* ---- files.c ---- */
 
