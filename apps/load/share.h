@@ -1,6 +1,8 @@
 /** The mesh of a scene's field, which several processes share (module/ranks.h). */
 #ifndef SHARE_OF_SCENE_H
 #define SHARE_OF_SCENE_H
+#include <stdbool.h>
+
 #include "problem.h"
 
 /** Check that several processes can share a scene, by leapfrog, or of a solid, if the command takes
