@@ -112,6 +112,11 @@ int ranks_count(void)
   return rank_count;
 }
 
+int ranks_number(void)
+{
+  return own_rank;
+}
+
 bool ranks_is_first(void)
 {
   return own_rank == 0;

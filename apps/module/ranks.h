@@ -18,6 +18,9 @@ int ranks_check_module(void);
 /** Return the number of processes, 1 without others. */
 int ranks_count(void);
 
+/** Return the number of this process, from 0. */
+int ranks_number(void);
+
 /** Tell if this process is the first one, which writes files. */
 bool ranks_is_first(void);
 

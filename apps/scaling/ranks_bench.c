@@ -12,6 +12,7 @@
 #include "cli/command.h"
 #include "load/field.h"
 #include "module/ranks.h"
+#include "scaling/cores.h"
 #include "scaling/ranks_report.h"
 #include "scaling/triad.h"
 #include "study/clock.h"
@@ -30,17 +31,11 @@ enum {
   NUMBER_TEXT = 32
 };
 
-static int count_cores(void)
-{
-  const long cores = sysconf(_SC_NPROCESSORS_ONLN);
-  return cores > 0 ? (int)cores : 1;
-}
-
 /* ---- the start ---- */
 
 static int choose_processes(const rank_counts *asked)
 {
-  const int most = count_cores() < STARTED_MOST ? count_cores() : STARTED_MOST;
+  const int most = cores_count() < STARTED_MOST ? cores_count() : STARTED_MOST;
   int processes = 2;
   for (int i = 0; i < asked->count; i++)
     if (asked->number[i] <= most) processes = (int)fmax(processes, asked->number[i]);
@@ -283,6 +278,7 @@ static int measure_message(ranks_bench *b)
 static int with(int ranks, int (*measure)(ranks_bench *b, int ranks), ranks_bench *b)
 {
   const bool works = ranks_among(ranks);
+  if (works) cores_keep(ranks_number());
   return ranks_rest(works ? measure(b, ranks) : DONE);
 }
 
@@ -302,7 +298,9 @@ static int network(ranks_bench *b, int ranks)
 static int triad(ranks_bench *b, int ranks)
 {
   triad_run *run = b->triad + b->triads;
-  *run = (triad_run){ranks, triad_together(ranks, b->request->timed.rounds)};
+  *run = (triad_run){ranks, (double)NAN};
+  if (ranks_on_machine() > b->cores) return DONE; /* turns would not be told from bandwidth */
+  run->bandwidth = triad_together(ranks, b->request->timed.rounds);
   return isfinite(run->bandwidth) ? DONE : FAILED;
 }
 
@@ -355,7 +353,7 @@ static int measure_all(ranks_bench *b)
 
 int ranks_bench_run(const ranks_request *request)
 {
-  ranks_bench b = {.request = request, .cores = count_cores()};
+  ranks_bench b = {.request = request, .cores = cores_count()};
   int code = ranks_agree(rank_counts_read(request->scaled, &b.asked));
   if (code == DONE) code = measure_all(&b);
   if (code == DONE && ranks_is_first()) code = ranks_report(&b);

@@ -41,7 +41,7 @@ typedef struct shared_run {
 /** The triad on some of the processes at once. */
 typedef struct triad_run {
   int ranks;
-  double bandwidth; /**< bytes a second of all together */
+  double bandwidth; /**< bytes a second of all together, NaN if oversubscribed */
 } triad_run;
 
 enum { SHARED_MAX = 16 };

@@ -119,9 +119,10 @@ static void print_triads(FILE *stream, const ranks_bench *b)
 {
   (void)fprintf(stream, "triad a = b + s c: ");
   for (int i = 0; i < b->triads; i++)
-    (void)fprintf(stream, "%s%.1f GB/s of %d process%s", i > 0 ? ", " : "",
-                  1e-9 * b->triad[i].bandwidth, b->triad[i].ranks,
-                  b->triad[i].ranks > 1 ? "es together" : "");
+    if (isfinite(b->triad[i].bandwidth))
+      (void)fprintf(stream, "%s%.1f GB/s of %d process%s", i > 0 ? ", " : "",
+                    1e-9 * b->triad[i].bandwidth, b->triad[i].ranks,
+                    b->triad[i].ranks > 1 ? "es together" : "");
   (void)fprintf(stream, "; a step of the whole mesh moves %.1f GB/s\n",
                 1e-9 * b->whole.bytes / b->whole.seconds.median);
 }
@@ -224,6 +225,7 @@ static void print_all(FILE *stream, const ranks_bench *b, const result_table *ro
   print_model(stream, b);
   (void)fprintf(stream, "\nStrong scaling: the mesh is divided\n");
   table_print(rows, stream, 2, 0, strong);
+  if (strong < b->asked.count) (void)fprintf(stream, "  more ranks than cells are left out\n");
   (void)fprintf(stream, "\nWeak scaling: each rank has as many cells as the mesh\n");
   table_print(rows, stream, 2, strong, table_rows(rows));
   (void)fprintf(
