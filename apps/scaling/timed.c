@@ -17,7 +17,7 @@ int timed_open(const timed_request *request, const dvi_scene_division *division,
   dvi_march_facts facts;
   *timed = (timed_march){.h = (double)NAN};
   int code = scene_open_share(request->scene, request->settings, division, &timed->scene);
-  if (code == DONE) code = share_check("bench", timed->scene, "leapfrog");
+  if (code == DONE) code = share_check("bench", timed->scene, "leapfrog", false);
   if (code == DONE) code = open_march(timed->scene, &options, &timed->march);
   if (code != DONE) return code;
   dvi_march_facts_of(timed->march, &facts);
