@@ -124,6 +124,14 @@ for option in '--scale ranks=1,2 --latency 0' '--scale ranks=1,2 --bandwidth nan
   [ $? -eq 2 ] || wrong "bench $option: $(cat out.txt)"
 done
 
+# One process foresees as many cells, which all have an owner.
+"$dvi" explain torus.yaml --ranks 3 --csv foreseen.csv >out.txt || wrong "explain --ranks fails"
+awk -F, 'NR > 1 { cells += $3; wrong += !($4 > 0 && $5 == 2 && $6 == 2 && $7 % 8 == 0) }
+  END { exit !(NR == 4 && cells == 324 && !wrong) }' foreseen.csv ||
+  wrong "explain --ranks: $(cat foreseen.csv)"
+"$dvi" explain kepler --method verlet --ranks 3 >out.txt 2>&1
+[ $? -eq 2 ] || wrong "explain --ranks takes kepler: $(cat out.txt)"
+
 # refused CODE WORDS ARGUMENT...: processes end with the code, and one sentence.
 refused() {
   code=$1 words=$2
