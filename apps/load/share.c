@@ -124,13 +124,13 @@ int share_foresee(const problem *scene, int processes, const char *csv)
   const dvi_mesh *mesh = field_mesh(field);
   const int degree = dvi_field_degree(field);
   division_table table = {.rows = table_create(columns)};
-  char how[HOW_SIZE];
   int *owner = malloc((size_t)dvi_mesh_count(mesh, dvi_mesh_dimension(mesh)) * sizeof *owner);
   dvi_status status = owner != NULL ? ranks_partition(mesh, processes, owner) : DVI_NO_MEMORY;
   for (int r = 0; r < processes && status == DVI_OK; r++)
     status = cut_share(mesh, owner, degree, processes, &table);
   free(owner);
   if (status == DVI_OK) {
+    char how[HOW_SIZE];
     (void)snprintf(how, sizeof how, "by %s in one process", ranks_partitioner());
     print_sum(&table, how, degree);
     return finish(&table, csv);
