@@ -16,7 +16,7 @@
 #include "load/share.h"
 #include "module/ranks.h"
 
-enum { NAMES_SHOWN = 12 };
+enum { NAMES_SHOWN = 12, RANKS_MOST = 10000 };
 
 static const double pi = 3.14159265358979323846;
 
@@ -192,23 +192,37 @@ typedef struct explain_request {
   words settings;
   pacing how;
   double h;        /* NaN if not given */
+  long ranks;      /* processes to be foreseen, 0 if not given */
   const char *csv; /* NULL if not given */
 } explain_request;
 
-/* Say how several processes share the mesh of a field. The last output is the table. */
+static int check_shares(const explain_request *r, const problem *scene)
+{
+  const char *method = r->method != NULL ? r->method : scene->method;
+  if (r->how.transform != NULL || r->how.control != NULL)
+    return usage_error("explain: leapfrog is a march of a field, whose steps follow no monitor");
+  if (r->ranks == 0) return share_check("explain", scene, r->method, false);
+  if (scene->scene != NULL && dvi_scene_marches(scene->scene, "leapfrog") && method != NULL &&
+      strcmp(method, "leapfrog") == 0)
+    return DONE;
+  return usage_error(
+      "explain: --ranks is for leapfrog on the mesh of a wave or of Maxwell's field");
+}
+
+/* Say how several processes share the mesh of a field, or would share it. */
 static int explain_shares(const explain_request *r, const char *name)
 {
   problem *scene;
   int code = open_any(name, &r->settings, &scene);
   if (code != DONE) return code;
-  code = share_check("explain", scene, r->method, false);
-  if (code == DONE && (r->how.transform != NULL || r->how.control != NULL))
-    code = usage_error("explain: leapfrog is a march of a field, whose steps follow no monitor");
+  code = check_shares(r, scene);
   if (code == DONE) {
     explain_parameters(scene, &r->settings);
     code = tell_steps(scene, "leapfrog", r->h);
   }
-  if (code == DONE) code = share_tell(scene, ranks_is_first() ? r->csv : NULL);
+  if (code == DONE)
+    code = r->ranks > 0 ? share_foresee(scene, (int)r->ranks, r->csv)
+                        : share_tell(scene, ranks_is_first() ? r->csv : NULL);
   problem_destroy(&scene);
   return code;
 }
@@ -228,7 +242,8 @@ static const char *const details[] = {
     "Processes that mpirun or srun started share the mesh of a wave or of Maxwell's field, for "
     "leapfrog. Said is which cells each\n"
     "of them owns, and what a step makes it receive: mpirun -np 4 dvi explain drum.yaml --method "
-    "leapfrog. Columns of --csv:\n"
+    "leapfrog. Without mpirun, --ranks 4\n"
+    "foresees it: one process cuts the mesh for all, a little differently. Columns of --csv:\n"
     "rank,partitioner,cells,ghosts,neighbours,messages,bytes; cells are those of the highest "
     "degree, and ghosts those of other\n"
     "processes beside them.\n",
@@ -257,10 +272,14 @@ static const option command_options[] = {
      OPTION_AT(explain_request, settings),
      .value = "NAME=VALUE",
      .help = "set a parameter of the problem; may be repeated"},
+    {.name = "ranks",
+     OPTION_AT(explain_request, ranks),
+     .value = "N",
+     .help = "of a field by leapfrog: foresee how N processes would share its mesh"},
     {.name = "csv",
      OPTION_AT(explain_request, csv),
      .value = "-|FILE",
-     .help = "of several processes: their shares as CSV; -: behind the words",
+     .help = "of processes that share a mesh: a row for each as CSV; -: behind the words",
      .is_csv = true},
     {.name = NULL},
 };
@@ -283,10 +302,18 @@ static int explain_alone(int argc, char **argv)
   if (!options_parse(&command, argc, argv, &r, &name, &code)) return code;
   code = pacing_check("explain", &r.how);
   if (code != DONE) return code;
-  if (ranks_count() > 1) return explain_shares(&r, name);
+  if (ranks_count() > 1 && r.ranks > 0)
+    return usage_error("explain: --ranks foresees processes, and %d are there; leave mpirun out",
+                       ranks_count());
+  if (r.ranks > RANKS_MOST)
+    return usage_error("explain: --ranks %ld is too many, %d are possible", r.ranks,
+                       (int)RANKS_MOST);
+  if (r.ranks > 0) code = ranks_begin_alone();
+  if (code != DONE) return code;
+  if (ranks_count() > 1 || r.ranks > 0) return explain_shares(&r, name);
   if (r.csv != NULL)
-    return usage_error("explain: --csv is for the shares of several processes: start them by "
-                       "mpirun");
+    return usage_error("explain: --csv is for the shares of several processes: give --ranks, or "
+                       "start them by mpirun");
   problem *scene;
   code = open_problem(name, &r.settings, &scene);
   if (code != DONE) return code;

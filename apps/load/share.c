@@ -3,14 +3,16 @@
 #include <dvi/scene.h>
 #include <stdbool.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "cli/command.h"
 #include "csv/table.h"
 #include "load/field.h"
+#include "load/stand_in.h"
 #include "module/ranks.h"
 
-enum { RANKS_SHOWN = 16 };
+enum { RANKS_SHOWN = 16, HOW_SIZE = 64 };
 
 int share_check(const char *command, const problem *scene, const char *method, bool takes_solids)
 {
@@ -36,68 +38,103 @@ static const table_column columns[] = {
     {"neighbours", "%.0f"}, {"messages", "%.0f"}, {"bytes", "%.0f"}, {NULL, NULL},
 };
 
-/* What all processes have together, and the least and the most of cells. */
-typedef struct division_sum {
-  int64_t cells, ghosts, messages, bytes;
+/* The rows of all processes, what they have together, and the least and the most of cells. */
+typedef struct division_table {
+  result_table *rows;
+  int count;
+  int64_t cells, messages, bytes;
   int64_t least, most;
-} division_sum;
+} division_table;
 
-static void add_share(division_sum *sum, const mesh_division *share)
+static void add_share(division_table *table, const mesh_division *share)
 {
-  if (sum->cells == 0 || share->owned < sum->least) sum->least = share->owned;
-  if (share->owned > sum->most) sum->most = share->owned;
-  sum->cells += share->owned;
-  sum->ghosts += share->ghosts;
-  sum->messages += share->messages_in;
-  sum->bytes += share->bytes_in;
+  if (table->count == 0 || share->owned < table->least) table->least = share->owned;
+  if (share->owned > table->most) table->most = share->owned;
+  table->cells += share->owned;
+  table->messages += share->messages_in;
+  table->bytes += share->bytes_in;
+  table_number(table->rows, table->count++);
+  table_text(table->rows, share->partitioner);
+  table_number(table->rows, (double)share->owned);
+  table_number(table->rows, (double)share->ghosts);
+  table_number(table->rows, share->neighbours);
+  table_number(table->rows, share->messages_in);
+  table_number(table->rows, (double)share->bytes_in);
 }
 
-static void add_row(result_table *rows, int rank, const mesh_division *share)
+static void print_sum(const division_table *table, const char *how, int degree)
 {
-  table_number(rows, rank);
-  table_text(rows, share->partitioner);
-  table_number(rows, (double)share->owned);
-  table_number(rows, (double)share->ghosts);
-  table_number(rows, share->neighbours);
-  table_number(rows, share->messages_in);
-  table_number(rows, (double)share->bytes_in);
-}
-
-static void print_sum(const division_sum *sum, const char *partitioner, int degree)
-{
-  const int ranks = ranks_count();
-  (void)printf("shares: %lld cells among %d processes by %s, %lld to %lld each, the most %.1f %% "
-               "above the mean\n",
-               (long long)sum->cells, ranks, partitioner, (long long)sum->least,
-               (long long)sum->most, 100 * ((double)sum->most * ranks / (double)sum->cells - 1));
+  const int count = table->count;
+  (void)printf(
+      "shares: %lld cells among %d processes %s, %lld to %lld each, the most %.1f %% above "
+      "the mean\n",
+      (long long)table->cells, count, how, (long long)table->least, (long long)table->most,
+      100 * ((double)table->most * count / (double)table->cells - 1));
   (void)printf("a step: all processes receive the values of others %s once, %lld bytes in %lld "
                "messages together\n",
-               degree == 0 ? "at vertices" : "on edges", (long long)sum->bytes,
-               (long long)sum->messages);
+               degree == 0 ? "at vertices" : "on edges", (long long)table->bytes,
+               (long long)table->messages);
 }
 
-static int finish(result_table *rows, const char *csv)
+static int finish(division_table *table, const char *csv)
 {
-  bool good = table_good(rows);
-  if (good && ranks_count() <= RANKS_SHOWN) table_print(rows, stdout, 0, 0, ranks_count());
-  if (good && ranks_count() > RANKS_SHOWN)
-    (void)printf("--csv FILE has the shares of all %d processes\n", ranks_count());
-  if (good && csv != NULL) good = table_write(rows, csv);
-  table_destroy(&rows);
+  bool good = table_good(table->rows);
+  if (good && table->count <= RANKS_SHOWN) table_print(table->rows, stdout, 0, 0, table->count);
+  if (good && table->count > RANKS_SHOWN)
+    (void)printf("--csv FILE has the shares of all %d processes\n", table->count);
+  if (good && csv != NULL) good = table_write(table->rows, csv);
+  table_destroy(&table->rows);
   return good ? DONE : FAILED;
 }
 
 int share_tell(const problem *scene, const char *csv)
 {
   const int degree = dvi_field_degree(dvi_scene_field(scene->scene));
-  result_table *rows = table_create(columns);
-  division_sum sum = {0};
+  division_table table = {.rows = table_create(columns)};
   mesh_division share = {.partitioner = ""};
+  char how[HOW_SIZE];
   for (int r = 0; r < ranks_count(); r++) {
     ranks_tell(r, degree, &share);
-    add_share(&sum, &share);
-    add_row(rows, r, &share);
+    add_share(&table, &share);
   }
-  print_sum(&sum, share.partitioner, degree);
-  return finish(rows, csv);
+  (void)snprintf(how, sizeof how, "by %s", share.partitioner);
+  print_sum(&table, how, degree);
+  return finish(&table, csv);
+}
+
+/* ---- processes that are not there ---- */
+
+static dvi_status cut_share(const dvi_mesh *mesh, const int *owner, int degree, int parts,
+                            division_table *table)
+{
+  const dvi_ranks ranks = stand_in(table->count, parts);
+  mesh_division division;
+  dvi_mesh *share = NULL;
+  dvi_status status = dvi_mesh_cut(mesh, owner, &ranks, &share);
+  if (status == DVI_OK && !stand_in_count(share, degree, ranks.rank, parts, &division))
+    status = DVI_NO_MEMORY;
+  if (status == DVI_OK) add_share(table, &division);
+  dvi_mesh_destroy(&share);
+  return status;
+}
+
+int share_foresee(const problem *scene, int processes, const char *csv)
+{
+  const dvi_field *field = dvi_scene_field(scene->scene);
+  const dvi_mesh *mesh = field_mesh(field);
+  const int degree = dvi_field_degree(field);
+  division_table table = {.rows = table_create(columns)};
+  int *owner = malloc((size_t)dvi_mesh_count(mesh, dvi_mesh_dimension(mesh)) * sizeof *owner);
+  dvi_status status = owner != NULL ? ranks_partition(mesh, processes, owner) : DVI_NO_MEMORY;
+  for (int r = 0; r < processes && status == DVI_OK; r++)
+    status = cut_share(mesh, owner, degree, processes, &table);
+  free(owner);
+  if (status == DVI_OK) {
+    char how[HOW_SIZE];
+    (void)snprintf(how, sizeof how, "by %s in one process", ranks_partitioner());
+    print_sum(&table, how, degree);
+    return finish(&table, csv);
+  }
+  table_destroy(&table.rows);
+  return library_error(status);
 }

@@ -14,4 +14,7 @@ int share_check(const char *command, const problem *scene, const char *method, b
  * them, with `csv` as the path of a table, "-" for standard output or NULL. Returns DONE, or
  * complains and returns the exit code. */
 int share_tell(const problem *scene, const char *csv);
+
+/** Do the same for processes that are not there, whose shares this one cuts (ranks_begin_alone). */
+int share_foresee(const problem *scene, int processes, const char *csv);
 #endif

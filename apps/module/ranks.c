@@ -96,13 +96,33 @@ int ranks_begin(void)
   return FAILED;
 }
 
+/* Load the module, or complain. */
+static const petsc_module *load_alone(void)
+{
+  void *library = dlopen(module_name, RTLD_NOW | RTLD_GLOBAL);
+  const petsc_module *found = library != NULL ? dlsym(library, symbol_name) : NULL;
+  if (found == NULL)
+    (void)usage_error("this dvi has no module for processes that share a mesh (%s); build dvi with "
+                      "-DDVI_PETSC=ON",
+                      dlerror());
+  return found;
+}
+
 int ranks_check_module(void)
 {
-  const void *library = dlopen(module_name, RTLD_LAZY | RTLD_LOCAL);
-  if (library != NULL) return DONE;
-  return usage_error("this dvi has no module for processes that share a mesh (%s); build dvi with "
-                     "-DDVI_PETSC=ON",
-                     dlerror());
+  return load_alone() != NULL ? DONE : USAGE;
+}
+
+int ranks_begin_alone(void)
+{
+  const petsc_module *found = load_alone();
+  if (found == NULL) return USAGE;
+  if (!found->start(&own_rank, &rank_count)) {
+    complain("MPI and PETSc could not be started");
+    return FAILED;
+  }
+  module = found;
+  return DONE;
 }
 
 /* ---- the run ---- */
@@ -215,6 +235,11 @@ double ranks_ping(void *bytes, int size, int times)
 dvi_status ranks_partition(const dvi_mesh *mesh, int parts, int *owner)
 {
   return module->partition(mesh, parts, owner);
+}
+
+const char *ranks_partitioner(void)
+{
+  return module->partitioner;
 }
 
 /* ---- the end ---- */

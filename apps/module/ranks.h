@@ -12,6 +12,10 @@
 /** Join the others, if there are any. Returns DONE, or complains and returns the exit code. */
 int ranks_begin(void);
 
+/** Start what processes share meshes by, in a process without others, which cuts meshes for them
+ * (ranks_partition). Returns DONE, or complains and returns the exit code. */
+int ranks_begin_alone(void);
+
 /** Check that this dvi could join others. Returns DONE, or complains and returns USAGE. */
 int ranks_check_module(void);
 
@@ -63,6 +67,9 @@ double ranks_ping(void *bytes, int size, int times);
 
 /** Find owners [cells of the highest degree] among any number of processes, in this one alone. */
 dvi_status ranks_partition(const dvi_mesh *mesh, int parts, int *owner);
+
+/** Return the name of what finds them. */
+const char *ranks_partitioner(void);
 
 /* ---- the end ---- */
 

@@ -160,9 +160,16 @@ static double ping(void *bytes, int size, int times)
   return code == MPI_SUCCESS ? least : (double)NAN;
 }
 
+#ifdef PETSC_HAVE_PTSCOTCH
+#define PARTITIONER "ptscotch"
+#else
+#define PARTITIONER "blocks"
+#endif
+
 static dvi_status partition(const dvi_mesh *mesh, int parts, int *owner)
 {
-  const dvi_division_options options = {.size = sizeof options, .comm = MPI_COMM_SELF};
+  const dvi_division_options options = {
+      .size = sizeof options, .comm = MPI_COMM_SELF, .partitioner = PARTITIONER};
   return dvi_mesh_partition(mesh, &options, parts, owner);
 }
 
@@ -191,6 +198,7 @@ const petsc_module dvi_petsc = {
     .refresh = refresh,
     .ping = ping,
     .partition = partition,
+    .partitioner = PARTITIONER,
     .end = end,
     .abandon = abandon,
 };

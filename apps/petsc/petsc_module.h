@@ -67,6 +67,7 @@ typedef struct petsc_module {
   /** Find owners of a mesh's cells of highest degree, among any number of processes, in this one
    * alone. */
   dvi_status (*partition)(const dvi_mesh *mesh, int parts, int *owner);
+  const char *partitioner; /**< the name of what finds them */
 
   /** Release the division, and end PETSc and MPI. */
   void (*end)(void);

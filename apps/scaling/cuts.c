@@ -6,45 +6,10 @@
 
 #include "cli/command.h"
 #include "load/field.h"
+#include "load/stand_in.h"
 #include "module/ranks.h"
 
 enum { TRIES = 8 /* parts with the largest surface that are cut out of all */ };
-
-/* ---- a process that stands for one of many, and hears nothing of the others ---- */
-
-static int no_refresh(int degree, double *values, void *user)
-{
-  (void)degree;
-  (void)values;
-  (void)user;
-  return 0;
-}
-
-static int own_sum(int count, int64_t *number, void *user)
-{
-  (void)count;
-  (void)number;
-  (void)user;
-  return 0;
-}
-
-static int own_largest(int count, double *number, void *user)
-{
-  (void)count;
-  (void)number;
-  (void)user;
-  return 0;
-}
-
-static dvi_ranks stand_in(int rank, int parts)
-{
-  return (dvi_ranks){.size = sizeof(dvi_ranks),
-                     .rank = rank,
-                     .count = parts,
-                     .refresh = no_refresh,
-                     .sum = own_sum,
-                     .largest = own_largest};
-}
 
 /* ---- the largest part ---- */
 
@@ -79,26 +44,6 @@ static int take_largest(int parts, int64_t *surface)
   return largest;
 }
 
-/* Count what a share receives in a refresh of a form of degree k. Owners are fewer than parts. */
-static bool measure_share(const dvi_mesh *share, int k, int rank, int parts, mesh_cut *cut)
-{
-  const int *owner = dvi_mesh_share_owners(share, k);
-  char *sends = calloc((size_t)parts, 1);
-  double bytes = 0, messages = 0;
-  if (sends == NULL) return false;
-  for (int64_t c = 0; c < dvi_mesh_count(share, k); c++) {
-    if (owner[c] == rank) continue;
-    bytes += sizeof(double);
-    messages += !sends[owner[c]];
-    sends[owner[c]] = 1;
-  }
-  free(sends);
-  cut->share = fmax(cut->share, (double)dvi_mesh_count(share, dvi_mesh_dimension(share)));
-  cut->bytes = fmax(cut->bytes, bytes);
-  cut->messages = fmax(cut->messages, messages);
-  return true;
-}
-
 /* Cut out the parts with the largest surface, find the most that one of them has, and keep the
  * largest share. */
 static dvi_status cut_largest(const dvi_mesh *mesh, int degree, const int *owner, int64_t *surface,
@@ -110,9 +55,13 @@ static dvi_status cut_largest(const dvi_mesh *mesh, int degree, const int *owner
     const dvi_ranks ranks = stand_in(take_largest(parts, surface), parts);
     const double before = cut->share;
     dvi_mesh *share = NULL;
+    mesh_division division = {.owned = 0};
     status = dvi_mesh_cut(mesh, owner, &ranks, &share);
-    if (status == DVI_OK && !measure_share(share, degree, ranks.rank, parts, cut))
+    if (status == DVI_OK && !stand_in_count(share, degree, ranks.rank, parts, &division))
       status = DVI_NO_MEMORY;
+    cut->share = fmax(cut->share, (double)(division.owned + division.ghosts));
+    cut->bytes = fmax(cut->bytes, (double)division.bytes_in);
+    cut->messages = fmax(cut->messages, division.messages_in);
     if (cut->share > before) {
       dvi_mesh *smaller = *largest;
       *largest = share;

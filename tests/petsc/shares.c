@@ -105,6 +105,9 @@ static void check_division(const dvi_mesh *mesh, const whole_run *whole, const c
   expect(count_wrong(&facts, share, mesh) == 0, "wrong facts", partitioner);
   expect(strcmp(facts.partitioner, partitioner) == 0, "wrong name", partitioner);
   expect(run_share(share, rank, whole) == 0, "other bits", partitioner);
+  const int64_t agreements = facts.agreements;
+  dvi_division_facts_of(division, &facts);
+  expect(facts.agreements > agreements, "no agreements are counted", partitioner);
   check_refresh(share, division);
   check_partition(mesh, partitioner);
   dvi_mesh_destroy(&share);

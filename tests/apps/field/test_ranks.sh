@@ -98,9 +98,9 @@ awk -F, 'NR > 1 { cells += $3
   wrong "explain: $(cat shares.csv)"
 
 # A step is measured on processes that dvi starts, and predicted for more of them.
-"$dvi" bench torus.yaml --scale ranks=1,2,4,...,300 --rounds 1 --steps 2 --csv scale.csv \
+"$dvi" bench torus.yaml --scale ranks=1,2,8,32,...,300 --rounds 1 --steps 2 --csv scale.csv \
   >out.txt || wrong "bench: no scaling"
-for words in '^Ranks that share torus.yaml' '^triad .* of 2 processes together' \
+for words in '^Ranks that share torus.yaml' '^triad .* of 1 process' \
   '^  network: .*shared memory' '^  fit: .*the largest deviation is' '^What breaks first'; do
   grep -q "$words" out.txt || wrong "bench: no '$words' in: $(cat out.txt)"
 done
@@ -114,7 +114,7 @@ awk -F, 'NR == 1 { next }
     if (!($5 > 0 && $6 > 0 && $7 >= 0 && $7 < 1)) bad++
     if (($7 == 0) != ($3 == 1) || ($10 != "") != measured) bad++
     if ($15 != ($1 == "weak" ? 324 * $3 : 324)) bad++ }
-  END { exit !(NR == 21 && !bad) }' scale.csv || wrong "bench: $(cat scale.csv)"
+  END { exit !(NR == 13 && !bad) }' scale.csv || wrong "bench: $(cat scale.csv)"
 # What makes no sense is refused before processes start.
 for option in '--scale ranks=1,2 --latency 0' '--scale ranks=1,2 --bandwidth nan' \
   '--scale ranks=2,1' '--scale ranks=1,2 --method avi' '--scale ranks=1,2 --at 1e-6' \
@@ -123,6 +123,14 @@ for option in '--scale ranks=1,2 --latency 0' '--scale ranks=1,2 --bandwidth nan
   "$dvi" bench torus.yaml $option >out.txt 2>&1
   [ $? -eq 2 ] || wrong "bench $option: $(cat out.txt)"
 done
+
+# One process foresees as many cells, which all have an owner.
+"$dvi" explain torus.yaml --ranks 3 --csv foreseen.csv >out.txt || wrong "explain --ranks fails"
+awk -F, 'NR > 1 { cells += $3; wrong += !($4 > 0 && $5 == 2 && $6 == 2 && $7 % 8 == 0) }
+  END { exit !(NR == 4 && cells == 324 && !wrong) }' foreseen.csv ||
+  wrong "explain --ranks: $(cat foreseen.csv)"
+"$dvi" explain kepler --method verlet --ranks 3 >out.txt 2>&1
+[ $? -eq 2 ] || wrong "explain --ranks takes kepler: $(cat out.txt)"
 
 # refused CODE WORDS ARGUMENT...: processes end with the code, and one sentence.
 refused() {
