@@ -3,6 +3,7 @@
 
 #include <dvi/petsc.h>
 #include <stddef.h>
+#include <string.h>
 #include <time.h>
 
 /* PETSc includes complex.h, whose I is no name for a parameter: libdvi's headers come first. */
@@ -12,6 +13,7 @@
 enum { PATIENCE = 2000, PAUSE = 5 }; /* milliseconds */
 
 static dvi_division *division;
+static MPI_Win common = MPI_WIN_NULL; /* memory of one machine */
 
 static bool start(int *rank, int *count)
 {
@@ -24,6 +26,35 @@ static bool start(int *rank, int *count)
   (void)MPI_Comm_size(MPI_COMM_WORLD, count);
   return true;
 }
+
+/* ---- one machine ---- */
+
+static void *share_memory(size_t head, size_t each, int *own, int *count)
+{
+  MPI_Comm machine;
+  MPI_Aint size = 0;
+  int unit;
+  void *memory = NULL;
+  if (MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine) !=
+      MPI_SUCCESS)
+    return NULL;
+  (void)MPI_Comm_rank(machine, own);
+  (void)MPI_Comm_size(machine, count);
+  if (*own == 0) size = (MPI_Aint)(head + (size_t)*count * each);
+  const int failed = MPI_Win_allocate_shared(size, 1, MPI_INFO_NULL, machine, &memory, &common);
+  if (failed || MPI_Win_shared_query(common, 0, &size, &unit, &memory) != MPI_SUCCESS) return NULL;
+  if (*own == 0) memset(memory, 0, (size_t)size);
+  (void)MPI_Barrier(machine);
+  (void)MPI_Comm_free(&machine);
+  return memory;
+}
+
+static bool wait_for_all(void)
+{
+  return MPI_Barrier(MPI_COMM_WORLD) == MPI_SUCCESS;
+}
+
+/* ---- shares ---- */
 
 static dvi_status divide(const dvi_mesh *mesh, dvi_mesh **share)
 {
@@ -78,6 +109,7 @@ static bool meet(const rank_end *own, rank_end *all)
 static void end(void)
 {
   dvi_division_destroy(&division);
+  if (common != MPI_WIN_NULL) (void)MPI_Win_free(&common);
   (void)PetscPopErrorHandler();
   (void)PetscFinalize();
 }
@@ -89,6 +121,8 @@ static void abandon(int code)
 
 const petsc_module dvi_petsc = {
     .start = start,
+    .share_memory = share_memory,
+    .wait_for_all = wait_for_all,
     .divide = divide,
     .tell = tell,
     .largest = largest,
