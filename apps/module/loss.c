@@ -14,7 +14,7 @@
 #include "cli/file.h"
 #include "cli/signals.h"
 
-enum { TEXT_SIZE = 1024, PERIOD = 250000 /* microseconds */ };
+enum { TEXT_SIZE = 2048, PERIOD = 250000 /* microseconds */ };
 
 /* Memory of all processes of a machine. */
 typedef struct seat {
@@ -109,8 +109,8 @@ static void set_alarm(long period)
 void loss_remedy(const char *remedy)
 {
   char *next = behind == text[0] ? text[1] : text[0];
-  (void)snprintf(next, TEXT_SIZE - 1, " was killed, or has crashed; %s", remedy);
-  (void)strcat(next, "\n");
+  const int most = TEXT_SIZE / 2;
+  (void)snprintf(next, TEXT_SIZE, " was killed, or has crashed; %.*s\n", most, remedy);
   behind = next;
 }
 

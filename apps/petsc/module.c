@@ -13,6 +13,8 @@
 enum { PATIENCE = 2000, PAUSE = 5 }; /* milliseconds */
 
 static dvi_division *division;
+/* What all processes do together. It stays pending if this one gives up and ends the others. */
+static MPI_Request pending = MPI_REQUEST_NULL;
 static MPI_Win common = MPI_WIN_NULL; /* memory of one machine */
 
 static bool start(int *rank, int *count)
@@ -77,14 +79,14 @@ static void tell(int rank, int degree, mesh_division *told)
                           .neighbours = (int)number[3]};
 }
 
-/* Wait until a request is met, for good or only for a while. */
-static bool is_met(MPI_Request request, bool has_failed)
+/* Wait until what is pending is met, for good or only for a while. */
+static bool is_met(bool has_failed)
 {
   const struct timespec pause = {.tv_nsec = PAUSE * 1000000L};
   int met = 0;
-  if (!has_failed) return MPI_Wait(&request, MPI_STATUS_IGNORE) == MPI_SUCCESS;
+  if (!has_failed) return MPI_Wait(&pending, MPI_STATUS_IGNORE) == MPI_SUCCESS;
   for (int waited = 0; !met && waited < PATIENCE; waited += PAUSE) {
-    if (MPI_Test(&request, &met, MPI_STATUS_IGNORE) != MPI_SUCCESS) return false;
+    if (MPI_Test(&pending, &met, MPI_STATUS_IGNORE) != MPI_SUCCESS) return false;
     if (!met) (void)nanosleep(&pause, NULL);
   }
   return met;
@@ -92,18 +94,16 @@ static bool is_met(MPI_Request request, bool has_failed)
 
 static bool largest(int number, bool has_failed, int *all)
 {
-  MPI_Request request;
-  return MPI_Iallreduce(&number, all, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD, &request) ==
+  return MPI_Iallreduce(&number, all, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD, &pending) ==
              MPI_SUCCESS &&
-         is_met(request, has_failed);
+         is_met(has_failed);
 }
 
 static bool meet(const rank_end *own, rank_end *all)
 {
-  MPI_Request request;
   return MPI_Iallgather(own, (int)sizeof *own, MPI_BYTE, all, (int)sizeof *all, MPI_BYTE,
-                        MPI_COMM_WORLD, &request) == MPI_SUCCESS &&
-         is_met(request, own->code != 0);
+                        MPI_COMM_WORLD, &pending) == MPI_SUCCESS &&
+         is_met(own->code != 0);
 }
 
 static void end(void)

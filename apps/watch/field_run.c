@@ -39,8 +39,8 @@ typedef struct journey {
   run_head head;
   progress_line progress;
   double unit, t_start;
-  long unit_count;          /* units from t = 0 */
-  double t_saved;           /* the time of the last checkpoint, once one is saved */
+  long unit_count;                    /* units from t = 0 */
+  double t_saved;                     /* the time of the last checkpoint, once one is saved */
   bool row_written, is_saved, beyond; /* a bound, which was told */
   const volatile sig_atomic_t *caught;
   int signal; /* that one of the processes has caught, or 0 */

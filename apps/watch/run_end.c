@@ -52,10 +52,11 @@ void run_tell_checkpoint(const run_request *request, const double *saved, const 
     (void)snprintf(text, sizeof text, "go on with --resume %s, which stands at t = %.17g", path,
                    *saved);
   else if (next != NULL)
-    (void)snprintf(text, sizeof text,
-                   "the first checkpoint was being written: if '%s' stands at t = %.17g, go on with "
-                   "--resume %s; otherwise %s",
-                   path, *next, path, otherwise);
+    (void)snprintf(
+        text, sizeof text,
+        "the first checkpoint was being written: if '%s' stands at t = %.17g, go on with "
+        "--resume %s; otherwise %s",
+        path, *next, path, otherwise);
   else
     (void)snprintf(text, sizeof text, "%s", otherwise);
   ranks_remedy(text);
