@@ -18,7 +18,8 @@ bool loss_watch(const petsc_module *module, int rank, int speech);
 /** Set what is said after the sentence that a process is missing. Copied, and cut if it is long. */
 void loss_remedy(const char *remedy);
 
-/** Tell if this process may say why all of them end, at its standard error. One of a machine may. */
+/** Tell if this process may say why all of them end, at its standard error. One of a machine
+ *  may. */
 bool loss_may_speak(void);
 
 /** Look for others no more: they end in good order. */

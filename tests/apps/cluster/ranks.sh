@@ -1,6 +1,6 @@
 #!/bin/sh
-# All that mpirun -np N dvi run does: the rows of dvi run, checkpoints that go on with another number
-# of processes, files, signals, kills, refusals. Skipped where dvi has no module for processes.
+# All that mpirun -np N dvi run does: the rows of dvi run, checkpoints that go on with other numbers
+# of processes, files, signals, kills, refusals; and dvi explain. Skipped where dvi has no module for processes.
 # Usage: ranks.sh DVI
 set -u
 here=$(cd "$(dirname "$0")" && pwd)
@@ -18,6 +18,14 @@ by 1 wave.yaml >one.csv
 same one.csv all.csv "standard output"
 as_one 2 wave.yaml --final --plot all.svg
 [ -s all.svg ] || fail "no plot"
+
+# Processes explain who owns what: all cells have an owner, and every message is counted.
+mpirun -np 3 "$dvi" explain torus.yaml --csv shares.csv >out || fail "explain fails"
+says out '^shares: 324 cells among 3 processes by [a-z]*, 10[0-9] to 1[0-9]* each' explain
+awk -F, 'NR > 1 { cells += $3
+    wrong += !($4 > 0 && $5 == 2 && $6 == 2 && $7 > 0 && $7 % 8 == 0) }
+  END { exit !(NR == 4 && cells == 324 && !wrong) }' shares.csv ||
+  fail "explain: $(cat shares.csv)"
 
 # ---- checkpoints ----
 
