@@ -253,15 +253,7 @@ static int check_shared(const run_request *request, const problem *scene)
 {
   const struct {
     const char *option, *given;
-<<<<<<< HEAD
   } whole[] = {{"pvd", request->pvd}, {"map", request->map}};
-  const char *method = request->method != NULL ? request->method : scene->method;
-=======
-  } whole[] = {{"pvd", request->pvd},
-               {"map", request->map},
-               {"checkpoint", request->checkpoint},
-               {"resume", request->resume}};
->>>>>>> 3bd64087a77e856ac0490b0581f03b9db0ddf570
   if (ranks_count() == 1) return DONE;
   const int code = share_check("run", scene, request->method);
   if (code != DONE) return code;

@@ -32,7 +32,7 @@ static seat *known; /* [seats] */
 
 /* What a process says, whose number is between the two texts. A handler reads the second one while
  * the program writes its next version. */
-static const char before[] = "dvi: run: the process of rank ";
+static const char before[] = "dvi: the process of rank ";
 static char text[2][TEXT_SIZE];
 static _Atomic(const char *) behind;
 

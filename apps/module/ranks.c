@@ -14,7 +14,7 @@
 static const char module_name[] = "dvi_petsc.so", symbol_name[] = "dvi_petsc";
 
 static const char ended_first[] =
-    "dvi: run: a signal came before all processes had been started; nothing was written\n";
+    "dvi: a signal came before all processes had been started; nothing was written\n";
 
 static bool is_echo;               /* this process fails because another one did */
 static const petsc_module *module; /* NULL in a process that is alone */

@@ -1,6 +1,7 @@
 #!/bin/sh
 # All that mpirun -np N dvi run does: the rows of dvi run, checkpoints that go on with other numbers
-# of processes, files, signals, kills, refusals; and dvi explain. Skipped where dvi has no module for processes.
+# of processes, files, signals, kills, refusals; and dvi explain. Skipped where dvi has no module for
+# processes.
 # Usage: ranks.sh DVI
 set -u
 here=$(cd "$(dirname "$0")" && pwd)
