@@ -14,15 +14,21 @@ _Static_assert(ATOMIC_POINTER_LOCK_FREE == 2,
 static volatile sig_atomic_t noting, noted;
 static _Atomic(const char *) farewell;
 
+/* Of a process among others, otherwise NULL. Set once. */
+static void (*look_at_others)(void);
+static bool (*is_speaker)(void);
+
 static void on_signal(int number)
 {
+  if (look_at_others != NULL) look_at_others();
   if (noting && (noted == 0 || number != SIGINT)) {
     if (noted == 0) noted = number;
     return;
   }
   file_remove_unfinished();
   const char *sentence = farewell;
-  const ssize_t written = sentence != NULL ? write(STDERR_FILENO, sentence, strlen(sentence)) : 0;
+  const bool speaks = sentence != NULL && (is_speaker == NULL || is_speaker());
+  const ssize_t written = speaks ? write(STDERR_FILENO, sentence, strlen(sentence)) : 0;
   (void)written;
   _exit(128 + number);
 }
@@ -51,4 +57,10 @@ const volatile sig_atomic_t *signals_note(const char *sentence)
   noting = 1; /* set first, because the sentence is for signals after the noted one */
   farewell = sentence;
   return &noted;
+}
+
+void signals_among(void (*look)(void), bool (*may_speak)(void))
+{
+  is_speaker = may_speak;
+  look_at_others = look;
 }

@@ -20,4 +20,9 @@ void signals_end(bool even_ignored, const char *sentence);
  *
  *  @return the address of the number of the first signal, 0 until then */
 const volatile sig_atomic_t *signals_note(const char *sentence);
+
+/** From now on the process is one of several. In the handler of each signal `look` is called first,
+ *  and may end the process. `may_speak` is called before a sentence, and tells if this process is
+ *  the one that writes it. */
+void signals_among(void (*look)(void), bool (*may_speak)(void));
 #endif

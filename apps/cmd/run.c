@@ -216,6 +216,7 @@ static int run_check_request(const run_request *request, const char *name)
   if (pacing_check("run", &request->how) != DONE) return USAGE;
   const int code = check_files(request, name);
   if (code != DONE) return code;
+  if (!ranks_is_first()) return DONE; /* the first process alone writes */
   if (request->checkpoint != NULL && !file_writable(request->checkpoint)) return FAILED;
   if (request->events != NULL && !file_writable(request->events)) return FAILED;
   if (request->map != NULL && !file_writable(request->map)) return FAILED;
@@ -252,10 +253,7 @@ static int check_shared(const run_request *request, const problem *scene)
 {
   const struct {
     const char *option, *given;
-  } whole[] = {{"pvd", request->pvd},
-               {"map", request->map},
-               {"checkpoint", request->checkpoint},
-               {"resume", request->resume}};
+  } whole[] = {{"pvd", request->pvd}, {"map", request->map}};
   if (ranks_count() == 1) return DONE;
   const int code = share_check("run", scene, request->method, true);
   if (code != DONE) return code;
@@ -556,12 +554,9 @@ static int run_alone(int argc, char **argv)
   const char *name;
   int code;
   if (!options_parse(&command, argc, argv, &r, &name, &code)) return code;
-  if (!ranks_is_first()) {
-    r.out = "-";
-    r.plot = NULL;
-  }
   code = ranks_agree(run_check_request(&r, name));
   if (code != DONE) return code;
+  if (!ranks_is_first()) r.out = "-";
   r.command = command_spelled("run", argc, argv);
   code = run_problem(&r, name);
   free(r.command);

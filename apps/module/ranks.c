@@ -9,8 +9,13 @@
 #include <unistd.h>
 
 #include "cli/command.h"
+#include "cli/signals.h"
+#include "module/loss.h"
 
 static const char module_name[] = "dvi_petsc.so", symbol_name[] = "dvi_petsc";
+
+static const char ended_first[] =
+    "dvi: a signal came before all processes had been started; nothing was written\n";
 
 static bool is_echo;               /* this process fails because another one did */
 static const petsc_module *module; /* NULL in a process that is alone */
@@ -81,6 +86,7 @@ int ranks_begin(void)
   int rank = 0;
   const int count = expected_count(&rank);
   if (count < 2) return DONE;
+  if (rank == 0) signals_end(true, ended_first);
   /* the parts of MPI that are loaded later look for its names */
   void *library = dlopen(module_name, RTLD_NOW | RTLD_GLOBAL);
   const petsc_module *found = library != NULL ? dlsym(library, symbol_name) : NULL;
@@ -91,7 +97,9 @@ int ranks_begin(void)
   }
   if (rank_count != count) return refuse_count(rank, count, found);
   module = found;
-  if (own_rank == 0 || keep_output()) return DONE;
+  if ((own_rank == 0 || keep_output()) &&
+      loss_watch(found, own_rank, own_rank == 0 ? STDERR_FILENO : spoken))
+    return DONE;
   complain("out of memory");
   return FAILED;
 }
@@ -157,7 +165,7 @@ static void speak(void)
 /* End all processes, which do not wait for this one where it waits for them. */
 static void abandon(int code)
 {
-  speak();
+  if (loss_may_speak()) speak();
   module->abandon(code);
 }
 
@@ -179,6 +187,11 @@ int ranks_agree(int code)
   const int worst = largest(code, code != DONE);
   is_echo = code == DONE && worst != DONE;
   return code != DONE ? code : worst;
+}
+
+void ranks_remedy(const char *remedy)
+{
+  if (module != NULL) loss_remedy(remedy);
 }
 
 dvi_status ranks_divide(const dvi_mesh *mesh, dvi_mesh **share, void *user)
@@ -262,6 +275,7 @@ int ranks_end(int code)
   (void)fflush(stderr);
   (void)fflush(stdout);
   if (all == NULL || !module->meet(&own, all)) abandon(code != DONE ? code : FAILED);
+  loss_end();
   const int culprit = all != NULL ? find_culprit(all) : -1;
   if (culprit == own_rank) speak();
   if (culprit >= 0) code = all[culprit].code;

@@ -35,6 +35,9 @@ int ranks_largest(int number);
  *  otherwise the largest one. */
 int ranks_agree(int code);
 
+/** Set what is said if another process is killed: how to go on. Copied. */
+void ranks_remedy(const char *remedy);
+
 /** Divide a mesh, as the callback of dvi_scene_division. */
 dvi_status ranks_divide(const dvi_mesh *mesh, dvi_mesh **share, void *user);
 

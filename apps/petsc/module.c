@@ -4,6 +4,7 @@
 #include <dvi/petsc.h>
 #include <math.h>
 #include <stddef.h>
+#include <string.h>
 #include <time.h>
 
 /* PETSc includes complex.h, whose I is no name for a parameter: libdvi's headers come first. */
@@ -14,6 +15,9 @@ enum { PATIENCE = 2000, PAUSE = 5 }; /* milliseconds */
 
 static dvi_division *division;
 static MPI_Comm workers = MPI_COMM_WORLD; /* the processes among which there is work */
+/* What all processes do together. It stays pending if this one gives up and ends the others. */
+static MPI_Request pending = MPI_REQUEST_NULL;
+static MPI_Win common = MPI_WIN_NULL; /* memory of one machine */
 
 static bool start(int *rank, int *count)
 {
@@ -26,6 +30,35 @@ static bool start(int *rank, int *count)
   (void)MPI_Comm_size(MPI_COMM_WORLD, count);
   return true;
 }
+
+/* ---- one machine ---- */
+
+static void *share_memory(size_t head, size_t each, int *own, int *count)
+{
+  MPI_Comm machine;
+  MPI_Aint size = 0;
+  int unit;
+  void *memory = NULL;
+  if (MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine) !=
+      MPI_SUCCESS)
+    return NULL;
+  (void)MPI_Comm_rank(machine, own);
+  (void)MPI_Comm_size(machine, count);
+  if (*own == 0) size = (MPI_Aint)(head + (size_t)*count * each);
+  const int failed = MPI_Win_allocate_shared(size, 1, MPI_INFO_NULL, machine, &memory, &common);
+  if (failed || MPI_Win_shared_query(common, 0, &size, &unit, &memory) != MPI_SUCCESS) return NULL;
+  if (*own == 0) memset(memory, 0, (size_t)size);
+  (void)MPI_Barrier(machine);
+  (void)MPI_Comm_free(&machine);
+  return memory;
+}
+
+static bool wait_for_all(void)
+{
+  return MPI_Barrier(MPI_COMM_WORLD) == MPI_SUCCESS;
+}
+
+/* ---- shares ---- */
 
 static dvi_status divide(const dvi_mesh *mesh, dvi_mesh **share)
 {
@@ -53,14 +86,14 @@ static void tell(int rank, int degree, mesh_division *told)
                           .agreements = number[5]};
 }
 
-/* Wait until a request is met, for good or only for a while. */
-static bool is_met(MPI_Request request, bool has_failed)
+/* Wait until what is pending is met, for good or only for a while. */
+static bool is_met(bool has_failed)
 {
   const struct timespec pause = {.tv_nsec = PAUSE * 1000000L};
   int met = 0;
-  if (!has_failed) return MPI_Wait(&request, MPI_STATUS_IGNORE) == MPI_SUCCESS;
+  if (!has_failed) return MPI_Wait(&pending, MPI_STATUS_IGNORE) == MPI_SUCCESS;
   for (int waited = 0; !met && waited < PATIENCE; waited += PAUSE) {
-    if (MPI_Test(&request, &met, MPI_STATUS_IGNORE) != MPI_SUCCESS) return false;
+    if (MPI_Test(&pending, &met, MPI_STATUS_IGNORE) != MPI_SUCCESS) return false;
     if (!met) (void)nanosleep(&pause, NULL);
   }
   return met;
@@ -68,18 +101,16 @@ static bool is_met(MPI_Request request, bool has_failed)
 
 static bool largest(int number, bool has_failed, int *all)
 {
-  MPI_Request request;
-  return MPI_Iallreduce(&number, all, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD, &request) ==
+  return MPI_Iallreduce(&number, all, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD, &pending) ==
              MPI_SUCCESS &&
-         is_met(request, has_failed);
+         is_met(has_failed);
 }
 
 static bool meet(const rank_end *own, rank_end *all)
 {
-  MPI_Request request;
   return MPI_Iallgather(own, (int)sizeof *own, MPI_BYTE, all, (int)sizeof *all, MPI_BYTE,
-                        MPI_COMM_WORLD, &request) == MPI_SUCCESS &&
-         is_met(request, own->code != 0);
+                        MPI_COMM_WORLD, &pending) == MPI_SUCCESS &&
+         is_met(own->code != 0);
 }
 
 /* ---- measurements among some of the processes ---- */
@@ -106,11 +137,10 @@ static bool among(int count, bool *takes_part)
 static bool rest(int number, int *all)
 {
   const struct timespec pause = {.tv_nsec = PAUSE * 1000000L};
-  MPI_Request request;
   int met = 0;
-  if (MPI_Iallreduce(&number, all, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD, &request) != MPI_SUCCESS)
+  if (MPI_Iallreduce(&number, all, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD, &pending) != MPI_SUCCESS)
     return false;
-  while (MPI_Test(&request, &met, MPI_STATUS_IGNORE) == MPI_SUCCESS && !met)
+  while (MPI_Test(&pending, &met, MPI_STATUS_IGNORE) == MPI_SUCCESS && !met)
     (void)nanosleep(&pause, NULL);
   return met;
 }
@@ -176,6 +206,7 @@ static dvi_status partition(const dvi_mesh *mesh, int parts, int *owner)
 static void end(void)
 {
   dismiss();
+  if (common != MPI_WIN_NULL) (void)MPI_Win_free(&common);
   (void)PetscPopErrorHandler();
   (void)PetscFinalize();
 }
@@ -187,6 +218,8 @@ static void abandon(int code)
 
 const petsc_module dvi_petsc = {
     .start = start,
+    .share_memory = share_memory,
+    .wait_for_all = wait_for_all,
     .divide = divide,
     .tell = tell,
     .largest = largest,

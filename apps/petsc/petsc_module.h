@@ -6,6 +6,7 @@
 #define PETSC_MODULE_H
 #include <dvi/mesh.h>
 #include <stdbool.h>
+#include <stddef.h>
 
 /** The share of a process: its cells of highest degree, and what it receives from others. */
 typedef struct mesh_division {
@@ -27,6 +28,14 @@ typedef struct rank_end {
 typedef struct petsc_module {
   /** Start MPI and PETSc, whose handlers of signals are left out. Returns whether it worked. */
   bool (*start)(int *rank, int *count);
+
+  /** Give memory of head + count*each bytes, all 0, that the processes of this machine have in
+   *  common, with their number and this process's place among them. Called once by all processes,
+   *  until whose end it stays. NULL if there is none. */
+  void *(*share_memory)(size_t head, size_t each, int *own, int *count);
+
+  /** Wait until all processes are here. Returns whether they have come. */
+  bool (*wait_for_all)(void);
 
   /** Divide a mesh among all processes. The share is for dvi_mesh_destroy before the end. One mesh
    *  can be divided at a time. */

@@ -39,8 +39,9 @@ typedef struct journey {
   run_head head;
   progress_line progress;
   double unit, t_start;
-  long unit_count;          /* units from t = 0 */
-  bool row_written, beyond; /* a bound, which was told */
+  long unit_count;                    /* units from t = 0 */
+  double t_saved;                     /* the time of the last checkpoint, once one is saved */
+  bool row_written, is_saved, beyond; /* a bound, which was told */
   const volatile sig_atomic_t *caught;
   int signal; /* that one of the processes has caught, or 0 */
 } journey;
@@ -225,10 +226,17 @@ static long next_stop(const journey *j)
 /* Save a checkpoint, and before that the rows that lead to it. */
 static bool save(journey *j)
 {
-  if (j->request->checkpoint == NULL) return true;
-  if (!row_output_flush(&j->out)) return false;
-  const dvi_status status = dvi_march_save(j->march, j->request->checkpoint);
-  return status == DVI_OK || library_error(status) == DONE;
+  const run_request *r = j->request;
+  if (r->checkpoint == NULL) return true;
+  if (ranks_agree(row_output_flush(&j->out) ? DONE : FAILED) != DONE) return false;
+  const double t = dvi_march_time(j->march), *before = j->is_saved ? &j->t_saved : NULL;
+  run_tell_checkpoint(r, before, &t);
+  const dvi_status status = dvi_march_save(j->march, r->checkpoint);
+  if (status != DVI_OK) return library_error(status) == DONE;
+  j->t_saved = t;
+  j->is_saved = true;
+  run_tell_checkpoint(r, &t, NULL);
+  return true;
 }
 
 static bool advance(journey *j, bool *ended)
@@ -325,27 +333,34 @@ static const char *column_name_at(int k, const void *list)
   return k < columns->count ? columns->column[k].name : NULL;
 }
 
-/* Open the rows. Those of a resumed run may go on in the file of the run before it. */
-static bool open_rows(journey *j)
+/* Open the rows. Those of a resumed run may go on in the file of the run before it. The first of
+ * several processes has them, and tells the others what is there. */
+static int open_rows(journey *j)
 {
   const run_request *r = j->request;
   const hdf5_state state = {.t = j->t_start,
                             .direction = 1,
                             .gap = (double)r->every * j->unit * (1 + 1e-9),
                             .has_row = start_has_row(j)};
-  if (!run_head_make(&j->head, r, j->scene, j->unit, column_name_at, &j->columns)) return false;
+  bool good = run_head_make(&j->head, r, j->scene, j->unit, column_name_at, &j->columns);
   j->frames.head = &j->head.rows;
-  return row_output_open(&j->out, r->out, &j->head.rows,
-                         r->resume != NULL && !r->final ? &state : NULL);
+  good = good && row_output_open(&j->out, r->out, &j->head.rows,
+                                 r->resume != NULL && !r->final ? &state : NULL);
+  const int code = ranks_agree(good ? DONE : FAILED);
+  if (code != DONE) return code;
+  j->out.is_appended = ranks_largest(j->out.is_appended);
+  j->out.has_row = ranks_largest(j->out.has_row);
+  return DONE;
 }
 
 static int write_files(journey *j)
 {
   const run_request *r = j->request;
-  int code = FAILED;
   if (r->plot != NULL && !field_trace_start(&j->trace, &j->columns)) return FAILED;
-  if (open_rows(j)) code = travel(j);
+  int code = open_rows(j);
+  if (code == DONE) code = travel(j);
   if (!row_output_close(&j->out, run_keeps_files(code))) code = FAILED;
+  if (!ranks_is_first()) return code;
   if (run_keeps_files(code) && !frames_keep(&j->frames)) code = FAILED;
   if (run_keeps_files(code) && r->plot != NULL && !field_trace_plot(&j->trace, r->plot))
     code = FAILED;
@@ -363,6 +378,7 @@ int field_run(run_request *request, const problem *scene)
   if (code == DONE) code = field_columns_choose(&j.columns, scene, j.march, request->columns);
   if (code == DONE && request->pvd != NULL) code = start_frames(&j);
   if (code == DONE) code = field_map_start(&j.map, scene, request->map, request->map_of);
+  run_tell_checkpoint(request, NULL, NULL);
   j.caught = signals_note(run_ended_again);
   if (code == DONE) code = write_files(&j);
   field_trace_clear(&j.trace);

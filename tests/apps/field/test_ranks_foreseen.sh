@@ -1,0 +1,60 @@
+#!/bin/sh
+# dvi explain tells and foresees the shares of processes, and dvi bench --scale ranks= predicts steps
+# of more of them. Skipped where dvi has no module for processes.
+# Usage: test_ranks_foreseen.sh DVI
+set -u
+here=$(cd "$(dirname "$0")" && pwd)
+. "$here/../check.sh"
+. "$here/ranks_setup.sh"
+
+if [ ! -e "$(dirname "$dvi")/dvi_petsc.so" ]; then
+  said=$("$dvi" bench wave.yaml --scale ranks=1,2 2>&1) && fail "ranks without a module: $said"
+  [ $failures -eq 0 ] || exit 1
+  echo "DVI_PETSC is OFF: no tests with MPI"
+  exit 77
+fi
+
+# Processes explain who owns what: all cells have an owner, and every message is counted.
+mpirun -np 3 "$dvi" explain torus.yaml --csv shares.csv >out.txt || fail "explain fails"
+grep -q '^shares: 324 cells among 3 processes by [a-z]*, 10[0-9] to 1[0-9]* each' out.txt ||
+  fail "explain: $(cat out.txt)"
+awk -F, 'NR > 1 { cells += $3
+    wrong += !($4 > 0 && $5 == 2 && $6 == 2 && $7 > 0 && $7 % 8 == 0) }
+  END { exit !(NR == 4 && cells == 324 && !wrong) }' shares.csv ||
+  fail "explain: $(cat shares.csv)"
+
+# A step is measured on processes that dvi starts, and predicted for more of them.
+"$dvi" bench torus.yaml --scale ranks=1,2,8,32,...,300 --rounds 1 --steps 2 --csv scale.csv \
+  >out.txt || fail "bench: no scaling"
+for words in '^Ranks that share torus.yaml' '^triad .* of 1 process' \
+  '^  network: .*shared memory' '^  fit: .*the largest deviation is' '^What breaks first'; do
+  grep -q "$words" out.txt || fail "bench: no '$words' in: $(cat out.txt)"
+done
+header=scaling,problem,ranks,rank_cells,step_seconds,efficiency,exchange,messages,bytes
+header=$header,measured_seconds,measured_efficiency,oversubscribed,measured_lower
+header=$header,measured_upper,cells
+[ "$(head -n 1 scale.csv)" = $header ] || fail "bench: $(head -n 1 scale.csv)"
+# One rank waits for nobody, and what was measured stands in its rows alone.
+awk -F, 'NR == 1 { next }
+  { measured = $3 == 1 || ($3 == 2 && $1 == "strong")
+    if (!($5 > 0 && $6 > 0 && $7 >= 0 && $7 < 1)) bad++
+    if (($7 == 0) != ($3 == 1) || ($10 != "") != measured) bad++
+    if ($15 != ($1 == "weak" ? 324 * $3 : 324)) bad++ }
+  END { exit !(NR == 13 && !bad) }' scale.csv || fail "bench: $(cat scale.csv)"
+# What makes no sense is refused before processes start.
+for option in '--scale ranks=1,2 --latency 0' '--scale ranks=1,2 --bandwidth nan' \
+  '--scale ranks=2,1' '--scale ranks=1,2 --method avi' '--scale ranks=1,2 --at 1e-6' \
+  '--latency 1e-6' '--scale threads=1,2 --weak n'; do
+  # shellcheck disable=SC2086
+  "$dvi" bench torus.yaml $option >out.txt 2>&1
+  [ $? -eq 2 ] || fail "bench $option: $(cat out.txt)"
+done
+
+# One process foresees as many cells, which all have an owner.
+"$dvi" explain torus.yaml --ranks 3 --csv foreseen.csv >out.txt || fail "explain --ranks fails"
+awk -F, 'NR > 1 { cells += $3; wrong += !($4 > 0 && $5 == 2 && $6 == 2 && $7 % 8 == 0) }
+  END { exit !(NR == 4 && cells == 324 && !wrong) }' foreseen.csv ||
+  fail "explain --ranks: $(cat foreseen.csv)"
+"$dvi" explain kepler --method verlet --ranks 3 >out.txt 2>&1
+[ $? -eq 2 ] || fail "explain --ranks takes kepler: $(cat out.txt)"
+exit $((failures > 0))
