@@ -8,6 +8,7 @@
 typedef struct dvi__world {
   MPI_Comm comm;
   int rank, count;                  /* this process, and how many there are */
+  int64_t agreements;               /* sums and largest numbers so far */
   struct dvi__letter *on_their_way; /* numbers that may not have been taken */
 } dvi__world;
 
