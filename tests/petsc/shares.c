@@ -1,5 +1,6 @@
 /* Fields on the shares of MPI's processes have every bit of the whole mesh, which each process
  * advances, too. Usage: mpirun -np N shares */
+#include <dvi/elastic.h>
 #include <dvi/petsc.h>
 #include <stdio.h>
 #include <string.h>
@@ -140,6 +141,62 @@ static void check_fields(void)
   check_field(with_core_and_exit(staggered_mesh(8, 9), NULL), driven_wave);
 }
 
+/* ---- solids ---- */
+
+enum { SEEN = 8 };
+
+/* Give what a march of a solid observes after some steps. */
+static dvi_status watch_solid(const dvi_mesh *mesh, const char *method, double seen[SEEN])
+{
+  const dvi_elastic_material rubber = {
+      .part = "all", .law = DVI_ELASTIC_NEO_HOOKEAN, .lambda = 1, .mu = 1, .rho = 1};
+  const dvi_elastic_terms terms = {
+      .size = sizeof terms, .mesh = mesh, .material = &rubber, .materials = 1};
+  const dvi_march_options options = {.size = sizeof options, .method = method, .fraction = 0.5};
+  const int64_t vertices = dvi_mesh_count(mesh, 0);
+  const double *X = dvi_mesh_points(mesh);
+  double *E = DVI_NEW(double, 3 * vertices);
+  dvi_elastic *solid = NULL;
+  dvi_march *march = NULL;
+  for (int64_t v = 0; E != NULL && v < vertices; v++) E[3 * v] = 0.2 * X[3 * v + 1] * X[3 * v];
+  const dvi_march_state state = {.size = sizeof state, .E = E};
+  dvi_status status = dvi_elastic_create(&terms, &solid);
+  if (status == DVI_OK) status = dvi_elastic_march_create(solid, &options, &march);
+  if (status == DVI_OK) status = dvi_march_start(march, &state);
+  if (status == DVI_OK) status = dvi_march_advance(march, 0.05);
+  for (int i = 0; i < SEEN && status == DVI_OK; i++) status = dvi_march_observe(march, i, seen + i);
+  dvi_march_destroy(&march);
+  dvi_elastic_destroy(&solid);
+  dvi__release(E);
+  return status;
+}
+
+static void check_solid(const char *partitioner, const char *method)
+{
+  const dvi_generator_options block = {.cells = {5, 3, 3}, .grading = {2, 1, 1}};
+  const dvi_division_options options = {.size = sizeof options, .partitioner = partitioner};
+  dvi_mesh *mesh = generated("kuhn", block), *share = NULL;
+  dvi_division *division = NULL;
+  double whole[SEEN] = {0}, seen[SEEN] = {0};
+  expect(watch_solid(mesh, method, whole) == DVI_OK, "no solid", method);
+  expect(dvi_mesh_divide(mesh, &options, &share, &division) == DVI_OK, "no division", partitioner);
+  expect(watch_solid(share, method, seen) == DVI_OK, "no solid", method);
+  int differ = 0;
+  for (int i = 0; i < SEEN; i++) differ |= whole[i] != seen[i];
+  expect(!differ, "other bits", method);
+  dvi_mesh_destroy(&share);
+  dvi_division_destroy(&division);
+  dvi_mesh_destroy(&mesh);
+}
+
+static void check_solids(void)
+{
+  check_solid("blocks", "verlet");
+  check_solid("ptscotch", "avi");
+  check_solid("blocks", "avi:classes=no");
+  check_solid("ptscotch", "avi:classes=no");
+}
+
 /* The status and a word of its sentence are those of all processes. */
 static void refuse(const dvi_mesh *mesh, const dvi_division_options *options, dvi_status status,
                    const char *word)
@@ -205,6 +262,7 @@ int main(int argc, char **argv)
   (void)MPI_Comm_size(MPI_COMM_WORLD, &ranks);
   expect(early, "divided before PETSc's start", "start");
   check_fields();
+  check_solids();
   check_refusals();
   check_memory("blocks");
   check_memory("ptscotch");

@@ -102,6 +102,13 @@ typedef struct dvi_ranks {
   /** Set numbers [count] to the largest ones of all processes. */
   int (*largest)(int count, double *number, void *user);
   void *user;
+  /** Send numbers [count] to another process, without waiting until it takes them. NULL with
+   *  `receive` if nothing is used that needs them, as free steps of solids do. These two are called
+   *  by single processes. */
+  int (*send)(int to, int count, const double *number, void *user);
+  /** Take the numbers that another process has sent by its first call of `send` that has not been
+   *  taken, at most `most` of them, and wait for them. */
+  int (*receive)(int from, int most, double *number, int *count, void *user);
 } dvi_ranks;
 
 #ifdef __cplusplus

@@ -175,7 +175,9 @@ static dvi_status make(const dvi_mesh *mesh, dvi_division *division, dvi_mesh **
                            .refresh = refresh,
                            .sum = dvi__world_sum,
                            .largest = dvi__world_largest,
-                           .user = division};
+                           .user = division,
+                           .send = dvi__world_send,
+                           .receive = dvi__world_receive};
   DVI_TRY(check_mesh(mesh, world, world->count));
   int *owner = DVI_NEW(int, dvi_mesh_count(mesh, dvi_mesh_dimension(mesh)));
   dvi_status status = dvi__world_agree(

@@ -9,6 +9,13 @@
 
 enum { RANKS = 16, NUMBERS = 1 << 14 };
 
+/* Numbers on their way from one thread to another. */
+typedef struct letter {
+  struct letter *next;
+  int count;
+  double number[];
+} letter;
+
 /* What all threads see. */
 typedef struct board {
   const dvi_mesh *whole;
@@ -22,7 +29,12 @@ typedef struct board {
   void (*work_on_boxes)(const dvi_yee_ranks *ranks, void *user);
   void *user;
   const double *sent[RANKS]; /* planes */
+  pthread_mutex_t mutex;     /* of the letters */
+  pthread_cond_t arrival;
+  letter *letter[RANKS][RANKS];
 } board;
+
+static int64_t letters, letter_numbers;
 
 typedef struct rank {
   board *board;
@@ -74,17 +86,62 @@ static int largest(int count, double *number, void *user)
   return 0;
 }
 
+static int send(int to, int count, const double *number, void *user)
+{
+  const rank *r = user;
+  letter *made = malloc(sizeof *made + (size_t)count * sizeof *number);
+  *made = (letter){.count = count};
+  memcpy(made->number, number, (size_t)count * sizeof *number);
+  (void)pthread_mutex_lock(&r->board->mutex);
+  letter **last = &r->board->letter[r->rank][to];
+  while (*last != NULL) last = &(*last)->next;
+  *last = made;
+  letters++;
+  letter_numbers += count;
+  (void)pthread_cond_broadcast(&r->board->arrival);
+  (void)pthread_mutex_unlock(&r->board->mutex);
+  return 0;
+}
+
+static int receive(int from, int most, double *number, int *count, void *user)
+{
+  const rank *r = user;
+  (void)pthread_mutex_lock(&r->board->mutex);
+  letter **first = &r->board->letter[from][r->rank], *taken;
+  while (*first == NULL) (void)pthread_cond_wait(&r->board->arrival, &r->board->mutex);
+  taken = *first;
+  *first = taken->next;
+  (void)pthread_mutex_unlock(&r->board->mutex);
+  *count = taken->count;
+  if (*count <= most) memcpy(number, taken->number, (size_t)*count * sizeof *number);
+  free(taken);
+  return *count > most;
+}
+
+void count_letters(int64_t *count, int64_t *numbers)
+{
+  *count = letters;
+  *numbers = letter_numbers;
+  letters = letter_numbers = 0;
+}
+
 /* Let all threads of a board run, each as a process. */
 static void run_threads(board *shared, void *(*run)(void *user), rank *ranks)
 {
   pthread_t thread[RANKS];
   ck_assert(pthread_barrier_init(&shared->barrier, NULL, (unsigned)shared->count) == 0);
+  ck_assert(pthread_mutex_init(&shared->mutex, NULL) == 0);
+  ck_assert(pthread_cond_init(&shared->arrival, NULL) == 0);
   for (int r = 0; r < shared->count; r++) {
     ranks[r] = (rank){.board = shared, .rank = r};
     ck_assert(pthread_create(thread + r, NULL, run, ranks + r) == 0);
   }
   for (int r = 0; r < shared->count; r++) ck_assert(pthread_join(thread[r], NULL) == 0);
   (void)pthread_barrier_destroy(&shared->barrier);
+  for (int from = 0; from < shared->count; from++)
+    for (int to = 0; to < shared->count; to++) ck_assert_ptr_null(shared->letter[from][to]);
+  (void)pthread_cond_destroy(&shared->arrival);
+  (void)pthread_mutex_destroy(&shared->mutex);
 }
 
 /* ---- meshes ---- */
@@ -98,7 +155,9 @@ static void *run(void *user)
                            .refresh = refresh,
                            .sum = sum,
                            .largest = largest,
-                           .user = r};
+                           .user = r,
+                           .send = send,
+                           .receive = receive};
   r->status = dvi_mesh_cut(r->board->whole, r->board->owner, &ranks, &r->share);
   if (r->status == DVI_OK) r->board->work(r->share, r->rank, r->board->user);
   dvi_mesh_destroy(&r->share);

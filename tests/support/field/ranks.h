@@ -9,6 +9,10 @@
 void run_ranks(const dvi_mesh *whole, int count, const int *owner,
                void (*work)(const dvi_mesh *share, int rank, void *user), void *user);
 
+/* Give how many messages the threads have sent each other, and numbers in them, since the last
+ * call. */
+void count_letters(int64_t *count, int64_t *numbers);
+
 /* Let each thread work as one of `count` processes that divide a grid of boxes. */
 void run_box_ranks(int count, void (*work)(const dvi_yee_ranks *ranks, void *user), void *user);
 

@@ -13,7 +13,7 @@ static int owns_node(const dvi__solid_avi *avi, int vertex)
 
 int dvi__solid_acts_here(const dvi_elastic *e, int64_t cell)
 {
-  int acts = dvi__owns(e->mesh, e->n, cell);
+  int acts = 0;
   for (int a = 0; a <= e->n; a++) acts |= dvi__owns(e->mesh, 0, e->vertex[cell * (e->n + 1) + a]);
   return acts;
 }
@@ -21,7 +21,7 @@ int dvi__solid_acts_here(const dvi_elastic *e, int64_t cell)
 /* Tell whether events of a cell, which has an own node, happen on other processes, too. */
 static int is_between(const dvi__solid_avi *avi, int64_t c)
 {
-  int between = !dvi__owns(avi->solid->mesh, avi->n, avi->cell[c].name);
+  int between = 0;
   for (int a = 0; a <= avi->n; a++) between |= !owns_node(avi, avi->cell[c].corner[a]);
   return between;
 }

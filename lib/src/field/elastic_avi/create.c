@@ -6,7 +6,7 @@
 #include "core/status.h"
 #include "field/elastic_avi/borders.h"
 #include "field/elastic_avi/layout.h"
-#include "field/elastic_avi/parts.h"
+#include "field/elastic_avi/neighbours.h"
 #include "field/mesh/share.h"
 
 static void destroy_view(dvi__solid_view *view)
@@ -27,6 +27,7 @@ void dvi__solid_avi_destroy(dvi__solid_avi **avi)
   destroy_view(s->view);
   dvi__solid_parts_destroy(&s->parts);
   dvi__solid_borders_destroy(&s->borders);
+  dvi__solid_neighbours_destroy(&s->neighbours);
   dvi__release(s);
   *avi = NULL;
 }
@@ -87,8 +88,9 @@ dvi_status dvi__solid_avi_create(const dvi_elastic *solid, const dvi__solid_requ
                         .threads = request->threads};
   status = dvi__agree(solid->mesh, allocate(s));
   if (status == DVI_OK) status = dvi__solid_lay_out(&plan, s);
+  if (status == DVI_OK) status = dvi__solid_neighbours_create(s);
   if (status == DVI_OK && (s->is_free || s->threads > 1))
-    status = dvi__solid_parts_create(&plan, s);
+    status = dvi__agree(solid->mesh, dvi__solid_parts_create(&plan, s));
   dvi__solid_plan_clear(&plan);
   if (status == DVI_OK)
     *avi = s;

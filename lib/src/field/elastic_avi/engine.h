@@ -121,11 +121,12 @@ typedef struct dvi__solid_avi {
   int64_t class_events[DVI__SOLID_CLASSES]; /* events of a slot on all processes */
   double shortest, longest, bound, band;
   int threads;
-  struct dvi__solid_parts *parts;     /* NULL for classes on a single thread */
-  struct dvi__solid_borders *borders; /* of a share, or NULL */
-  int is_lost;                        /* processes could not give each other their values */
-  size_t size;                        /* bytes of the block */
-  void *block, *kept;                 /* the state, and that of an earlier time */
+  struct dvi__solid_parts *parts;           /* NULL for classes on a single thread */
+  struct dvi__solid_borders *borders;       /* of a share, or NULL */
+  struct dvi__solid_neighbours *neighbours; /* of free steps on a share, or NULL */
+  int is_lost;                              /* processes could not give each other their values */
+  size_t size;                              /* bytes of the block */
+  void *block, *kept;                       /* the state, and that of an earlier time */
   dvi__solid_state state;
   dvi__solid_clock clock, kept_clock;
   dvi__solid_view *view;

@@ -18,7 +18,7 @@
 #include <math.h>
 #include <stdatomic.h>
 
-#include "field/elastic_avi/parts.h"
+#include "field/elastic_avi/neighbours.h"
 
 /* An event: its slot, or with free steps its time, and the own number of its cell. */
 typedef struct part_event {
@@ -251,5 +251,6 @@ static dvi__solid_halt run_calendars(dvi__solid_avi *avi, double limit)
 
 dvi__solid_halt dvi__solid_run_in_order(dvi__solid_avi *avi, double limit)
 {
+  if (avi->neighbours != NULL) return dvi__solid_run_shared(avi, limit);
   return (avi->is_free ? run_calendars : dvi__solid_run_slots)(avi, limit);
 }

@@ -56,16 +56,13 @@ static void number_cells(const dvi__solid_plan *plan, dvi__solid_avi *avi)
     take_cell(plan, c, begin[group_of(avi->solid, plan, c)]++, avi);
 }
 
-/* Count the events of slots on all processes. */
-static dvi_status count_events(dvi__solid_avi *avi)
+/* Count the events of slots on all processes, each where its cell is owned. */
+static dvi_status count_events(const dvi__solid_plan *plan, dvi__solid_avi *avi)
 {
   const dvi_mesh *mesh = avi->solid->mesh;
-  for (int j = 0; j < avi->classes; j++) {
-    const int64_t first = j > 0 ? avi->class_end[j - 1] : 0;
-    if (j > 0) avi->class_events[j] = avi->class_events[j - 1];
-    for (int64_t c = first; c < avi->class_end[j]; c++)
-      avi->class_events[j] += dvi__owns(mesh, avi->n, avi->cell[c].name);
-  }
+  for (int64_t c = 0; c < avi->cells; c++)
+    if (isfinite(plan->step[c]) && dvi__owns(mesh, avi->n, c)) avi->class_events[plan->class[c]]++;
+  for (int j = 1; j < avi->classes; j++) avi->class_events[j] += avi->class_events[j - 1];
   return dvi__count_all(mesh, avi->classes, avi->class_events);
 }
 
@@ -181,7 +178,7 @@ dvi_status dvi__solid_lay_out(const dvi__solid_plan *plan, dvi__solid_avi *avi)
 {
   number_cells(plan, avi);
   list_cells(avi);
-  DVI_TRY(count_events(avi));
+  DVI_TRY(count_events(plan, avi));
   DVI_TRY(dvi__solid_borders_create(avi));
   if (avi->decay != NULL) {
     find_decay(avi);

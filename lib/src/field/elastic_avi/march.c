@@ -188,7 +188,10 @@ static dvi_status check_share(const dvi_elastic *e, const dvi__solid_request *re
   int is_viscous = 0;
   for (int i = 0; i < e->material_count; i++) is_viscous |= e->materials[i].beta > 0;
   if (is_viscous) DVI_TRY(dvi__refuse_share(e->mesh, "march: a damping beta"));
-  if (request->is_free) DVI_TRY(dvi__refuse_share(e->mesh, "march: avi:classes=no"));
+  if (request->is_free && e->mesh->share != NULL &&
+      (e->mesh->share->ranks.send == NULL || e->mesh->share->ranks.receive == NULL))
+    return dvi__fail(DVI_UNSUPPORTED, "march: processes that share avi:classes=no need send and "
+                                      "receive of dvi_ranks");
   return request->threads > 1 ? dvi__refuse_share(e->mesh, "march: a solid on several threads")
                               : DVI_OK;
 }

@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "field/elastic_avi/borders.h"
+#include "field/elastic_avi/neighbours.h"
 
 int dvi__solid_class_of_slot(const dvi__solid_avi *avi, int64_t slot)
 {
@@ -44,5 +45,6 @@ dvi__solid_halt dvi__solid_run_slots(dvi__solid_avi *avi, double limit)
 
 dvi__solid_halt dvi__solid_run(dvi__solid_avi *avi, double limit)
 {
+  if (avi->neighbours != NULL) return dvi__solid_run_shared(avi, limit);
   return avi->parts != NULL ? dvi__solid_run_parts(avi, limit) : dvi__solid_run_slots(avi, limit);
 }
