@@ -113,6 +113,7 @@ BEGIN {
   also["text core/memory.h"] = also["expr/compile num/simd/lanes.h"] = 1
   # The component petsc sees these headers of the library.
   also["petsc core/memory.h"] = also["petsc core/status.h"] = 1
+  also["petsc field/mesh/given.h"] = also["petsc field/mesh/shape.h"] = 1
   # Standard headers that a public header may need.
   split("math.h stdarg.h stddef.h stdint.h string.h", open_headers)
   for (i in open_headers) standard[open_headers[i]] = 1
@@ -136,8 +137,8 @@ function part_of_mpi(header) { return header ~ /^(mpi|petsc[a-z]*)\.h$/ || heade
 # lib/petsc is the only component that is linked to PETSc and MPI.
 function check_component(quoted, header) {
   if (quoted && header ~ /\// && !(("petsc " header) in also))
-    breach("lib/petsc may include public headers, and of libdvi's own core/memory.h and " \
-           "core/status.h")
+    breach("lib/petsc may include public headers, and of libdvi's own core/memory.h, " \
+           "core/status.h, field/mesh/given.h and field/mesh/shape.h")
 }
 
 function check_library(quoted, header,   target) {
