@@ -31,6 +31,12 @@ static dvi_status divide(const dvi_mesh *mesh, dvi_mesh **share)
   return dvi_mesh_divide(mesh, NULL, share, &division);
 }
 
+static dvi_status read_share(const char *path, dvi_mesh **share)
+{
+  dvi_division_destroy(&division);
+  return dvi_mesh_read_divided(path, NULL, share, &division);
+}
+
 static void tell(int rank, int degree, mesh_division *told)
 {
   dvi_division_facts facts = {.partitioner = ""};
@@ -92,6 +98,8 @@ static void abandon(int code)
 const petsc_module dvi_petsc = {
     .start = start,
     .divide = divide,
+    .read = read_share,
+    .write = dvi_mesh_write_divided,
     .tell = tell,
     .largest = largest,
     .meet = meet,

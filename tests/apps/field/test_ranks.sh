@@ -74,21 +74,33 @@ alone 'MPI knows of 1'
 { cat wave.yaml; echo 'probes: {a: {at: [0.5, 0.5]}}'; } >probes.yaml
 sed 's/exp(/sqrt(x - 0.5)*exp(/' wave.yaml >nan.yaml
 
-# same N SCENE OPTION...: N processes write the rows of one.
+# A mesh that processes read in parts.
+sed 's/^mesh: .*/mesh: {file: torus.h5}/' torus.yaml >parts.yaml
+"$dvi" mesh bcc-torus --cells 3,3,3 --size 1,1,1 --write torus.h5 >out.txt ||
+  wrong "torus.h5 is not written"
+"$dvi" run parts.yaml >out.txt 2>err.txt && wrong "one process reads a mesh in parts"
+grep -q "several processes read 'torus.h5' in parts (mpirun -np 2 dvi run)" err.txt ||
+  wrong "one process: $(cat err.txt)"
+"$dvi" mesh bcc-torus --cells 3,3,3 --write /nowhere/torus.h5 >out.txt 2>err.txt &&
+  wrong "a mesh is written nowhere"
+grep -q "^dvi: .*cannot write a file beside /nowhere/torus.h5" err.txt ||
+  wrong "nowhere: $(cat err.txt)"
+
+# same N SCENE OTHER OPTION...: N processes write from the other scene the rows of one.
 same() {
-  ranks=$1 scene=$2
-  shift 2
+  ranks=$1 scene=$2 other=$3
+  shift 3
   "$dvi" run "$scene" "$@" --out one.csv || wrong "$scene: dvi run fails"
-  mpirun -np "$ranks" "$dvi" run "$scene" "$@" --out all.csv || wrong "$scene: $ranks fail"
-  cmp one.csv all.csv || wrong "$scene: $ranks processes have other rows"
+  mpirun -np "$ranks" "$dvi" run "$other" "$@" --out all.csv || wrong "$other: $ranks fail"
+  cmp one.csv all.csv || wrong "$other: $ranks processes have other rows"
 }
-same 3 torus.yaml --columns energy,gauss,e
-same 4 box.yaml --every 5
+same 3 torus.yaml parts.yaml --columns energy,gauss,e
+same 4 box.yaml box.yaml --every 5
 mpirun -np 2 "$dvi" run wave.yaml >all.csv || wrong "no rows on standard output"
 "$dvi" run wave.yaml | cmp - all.csv || wrong "other rows on standard output"
 
 # Processes explain who owns what: all cells have an owner, and every message is counted.
-mpirun -np 3 "$dvi" explain torus.yaml --csv shares.csv >out.txt || wrong "explain fails"
+mpirun -np 3 "$dvi" explain parts.yaml --csv shares.csv >out.txt || wrong "explain fails"
 grep -q '^shares: 324 cells among 3 processes by [a-z]*, 10[0-9] to 1[0-9]* each' out.txt ||
   wrong "explain: $(cat out.txt)"
 awk -F, 'NR > 1 { cells += $3
