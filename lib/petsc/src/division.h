@@ -19,8 +19,8 @@ struct dvi_division {
  * was begun is for dvi_division_destroy, also after a failure. */
 dvi_status dvi__division_begin(const dvi_division_options *options, dvi_division **division);
 
-/* Refuse more processes than cells. */
-dvi_status dvi__check_enough(const dvi__world *world, int64_t cells);
+/* Refuse more parts than cells. */
+dvi_status dvi__check_enough(int parts, int64_t cells);
 
 /* Return how the processes of a division speak with each other. */
 dvi_ranks dvi__division_ranks(dvi_division *division);

@@ -95,7 +95,8 @@ static dvi_status own_by_graph(dvi__mesh_reader *r)
 {
   const dvi__block *b = r->block + r->head.n;
   const int slots = dvi__facets(r->head.kind, r->head.n);
-  const dvi__divider divider = {.world = r->world, .partitioner = r->division->partitioner};
+  const dvi__divider divider = {
+      .world = r->world, .parts = r->world->count, .partitioner = r->division->partitioner};
   dvi__graph g = {.cells = b->total, .first = b->first, .last = b->last};
   void *neighbour = NULL, *owner = NULL;
   dvi_status status = dvi__allocate_all(r->world, (b->last - b->first) * slots, sizeof(int),

@@ -58,7 +58,7 @@ static dvi_status begin(dvi__mesh_reader *r, const char *path)
 {
   DVI_TRY(dvi__slabs_open(r->world, path, &r->file));
   DVI_TRY(dvi__world_agree(r->world, dvi__read_head(r->file, &r->head)));
-  DVI_TRY(dvi__check_enough(r->world, r->head.count[r->head.n]));
+  DVI_TRY(dvi__check_enough(r->world->count, r->head.count[r->head.n]));
   r->block[0] = dvi__block_of(r->world, r->head.count[0]);
   r->block[r->head.n] = dvi__block_of(r->world, r->head.count[r->head.n]);
   return read_cells(r);
