@@ -10,6 +10,8 @@
 #include "cli/outputs.h"
 #include "csv/table.h"
 #include "load/open_mesh.h"
+#include "module/ranks.h"
+#include "module/store.h"
 
 enum { NAME_SIZE = 48 };
 
@@ -258,7 +260,7 @@ static const option command_options[] = {
     {.name = "write",
      OPTION_AT(mesh_request, write),
      .value = "FILE",
-     .help = "write the mesh as .msh, .off, .ply or .vtu"},
+     .help = "write the mesh as .msh, .off, .ply or .vtu, or as .h5 for several processes"},
     {.name = "csv",
      OPTION_AT(mesh_request, csv),
      .value = "FILE",
@@ -276,6 +278,13 @@ static const command_line command = {
     .details = details,
 };
 
+static int write_mesh(const dvi_mesh *mesh, const char *path)
+{
+  if (store_is_wanted(path)) return ranks_write_mesh(mesh, path);
+  const dvi_status status = dvi_mesh_write(mesh, path, 0, NULL);
+  return status == DVI_OK ? DONE : library_error(status);
+}
+
 static int run(const mesh_request *r, const char *name)
 {
   dvi_mesh *mesh = NULL;
@@ -284,8 +293,7 @@ static int run(const mesh_request *r, const char *name)
   if (code == DONE && r->repair != NULL) code = repair(r, &mesh);
   if (code == DONE && r->repair != NULL) code = audit(r, name, mesh, true);
   if (code == DONE && r->write != NULL) {
-    const dvi_status status = dvi_mesh_write(mesh, r->write, 0, NULL);
-    code = status == DVI_OK ? DONE : library_error(status);
+    code = write_mesh(mesh, r->write);
   }
   dvi_mesh_destroy(&mesh);
   return code;

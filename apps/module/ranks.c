@@ -81,15 +81,20 @@ static bool keep_output(void)
          freopen("/dev/null", "w", stdout) != NULL && dup2(fileno(kept), STDERR_FILENO) >= 0;
 }
 
+/* Load the module. The parts of MPI that are loaded later look for its names. */
+static const petsc_module *load(void)
+{
+  void *library = dlopen(module_name, RTLD_NOW | RTLD_GLOBAL);
+  return library != NULL ? dlsym(library, symbol_name) : NULL;
+}
+
 int ranks_begin(void)
 {
   int rank = 0;
   const int count = expected_count(&rank);
   if (count < 2) return DONE;
   if (rank == 0) signals_end(true, ended_first);
-  /* the parts of MPI that are loaded later look for its names */
-  void *library = dlopen(module_name, RTLD_NOW | RTLD_GLOBAL);
-  const petsc_module *found = library != NULL ? dlsym(library, symbol_name) : NULL;
+  const petsc_module *found = load();
   if (found == NULL) return refuse_missing(rank, count);
   if (!found->start(&own_rank, &rank_count)) {
     complain("MPI and PETSc could not be started");
@@ -198,6 +203,23 @@ dvi_status ranks_divide(const dvi_mesh *mesh, dvi_mesh **share, void *user)
 {
   (void)user;
   return module->divide(mesh, share);
+}
+
+dvi_status ranks_read(const char *path, dvi_mesh **share, void *user)
+{
+  (void)user;
+  return module->read(path, share);
+}
+
+int ranks_write_mesh(const dvi_mesh *mesh, const char *path)
+{
+  const petsc_module *writer = load();
+  if (writer == NULL)
+    return usage_error("'%s' is a mesh that several processes read in parts, and this dvi has no "
+                       "module for it (%s); build dvi with -DDVI_PETSC=ON",
+                       path, dlerror());
+  const dvi_status status = writer->write(mesh, path);
+  return status == DVI_OK ? DONE : library_error(status);
 }
 
 void ranks_tell(int rank, int degree, mesh_division *division)

@@ -41,6 +41,12 @@ void ranks_remedy(const char *remedy);
 /** Divide a mesh, as the callback of dvi_scene_division. */
 dvi_status ranks_divide(const dvi_mesh *mesh, dvi_mesh **share, void *user);
 
+/** Read a share from a file of HDF5 in parts, as its other callback. */
+dvi_status ranks_read(const char *path, dvi_mesh **share, void *user);
+
+/** Write a mesh to such a file. Returns DONE, or complains and returns the exit code. */
+int ranks_write_mesh(const dvi_mesh *mesh, const char *path);
+
 /** Give the share of process `rank`, of forms of a degree. Called by all processes. */
 void ranks_tell(int rank, int degree, mesh_division *division);
 

@@ -67,6 +67,13 @@ static dvi_status divide(const dvi_mesh *mesh, dvi_mesh **share)
   return dvi_mesh_divide(mesh, &options, share, &division);
 }
 
+static dvi_status read_share(const char *path, dvi_mesh **share)
+{
+  dvi_division_destroy(&division);
+  const dvi_division_options options = {.size = sizeof options, .comm = workers};
+  return dvi_mesh_read_divided(path, &options, share, &division);
+}
+
 static void tell(int rank, int degree, mesh_division *told)
 {
   dvi_division_facts facts = {.partitioner = ""};
@@ -221,6 +228,8 @@ const petsc_module dvi_petsc = {
     .share_memory = share_memory,
     .wait_for_all = wait_for_all,
     .divide = divide,
+    .read = read_share,
+    .write = dvi_mesh_write_divided,
     .tell = tell,
     .largest = largest,
     .meet = meet,

@@ -41,6 +41,12 @@ typedef struct petsc_module {
    *  can be divided at a time. */
   dvi_status (*divide)(const dvi_mesh *mesh, dvi_mesh **share);
 
+  /** Read a share of the mesh in a file of HDF5 likewise, in parts. */
+  dvi_status (*read)(const char *path, dvi_mesh **share);
+
+  /** Write a whole mesh to such a file. The module need not be started. */
+  dvi_status (*write)(const dvi_mesh *mesh, const char *path);
+
   /** Give the division of process `rank`, with the bytes that a form of a degree receives. Called
    *  by all processes. */
   void (*tell)(int rank, int degree, mesh_division *division);

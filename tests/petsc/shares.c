@@ -6,25 +6,14 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "expect.h"
+#include "parts.h"
 #include "support/field/generated.h"
 #include "support/meshes.h"
 #include "support/shares/shares.h"
 
 /* PETSc includes complex.h, whose I is no name for a parameter: libdvi's headers come first. */
 #include <petscsys.h>
-
-static int rank, ranks, failures;
-
-static void expect(int holds, const char *what, const char *partitioner)
-{
-  int all = holds;
-  (void)MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
-  if (all) return;
-  failures++;
-  if (!holds)
-    (void)fprintf(stderr, "process %d of %d, %s: %s (%s)\n", rank, ranks, partitioner, what,
-                  dvi_last_error());
-}
 
 /* Count the other processes that own cells of a degree. There are a few processes. */
 static int count_owners(const dvi_mesh *share, int k)
@@ -266,6 +255,8 @@ int main(int argc, char **argv)
   check_refusals();
   check_memory("blocks");
   check_memory("ptscotch");
+  check_parts();
+  if (ranks % 2 > 0) check_refused_parts(); /* two and four fail as three do */
   (void)PetscFinalize();
   return failures > 0;
 }

@@ -108,12 +108,16 @@ typedef struct dvi_scene_point {
   void *user[3];
 } dvi_scene_point;
 
-/** What replaces the mesh of a scene by the share of one process, as soon as it has been made. */
+/** What replaces the mesh of a scene by the share of one process, as soon as it has been made, or
+ *  makes the share without a whole mesh. */
 typedef struct dvi_scene_division {
   size_t size; /**< sizeof(dvi_scene_division) */
   /** Cut the share out of the whole mesh: dvi_mesh_cut, or dvi_mesh_divide of <dvi/petsc.h>.
    *  Returns DVI_OK, or the status of dvi_last_error() */
   dvi_status (*divide)(const dvi_mesh *mesh, dvi_mesh **share, void *user);
+  /** Read the share from a file whose name ends in .h5: dvi_mesh_read_divided of <dvi/petsc.h>.
+   *  Returns likewise. NULL: such files are refused, as they are by dvi_scene_read */
+  dvi_status (*read)(const char *path, dvi_mesh **share, void *user);
   void *user;
 } dvi_scene_division;
 

@@ -1,21 +1,11 @@
 /* A mesh divided among processes: the graph of its n-cells goes to a partitioner of PETSc, and the
  * values of ghosts come through a star forest for each degree (PetscSF). */
-#include <dvi/petsc.h>
-#include <petscsf.h>
 #include <string.h>
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "division.h"
 #include "owners.h"
-
-enum { DEGREES = DVI_MESH_DIMENSION_MAX + 1, NAME_SIZE = 32 };
-
-struct dvi_division {
-  dvi__world world;        /* the first member, so that a division is one */
-  PetscSF forest[DEGREES]; /* roots are the owners' cells, leaves the ghosts */
-  char partitioner[NAME_SIZE];
-  dvi_division_facts facts;
-};
 
 /* ---- how processes speak with each other ---- */
 
@@ -26,6 +16,19 @@ static int refresh(int degree, double *values, void *user)
   int failed = PetscSFBcastBegin(forest, MPI_DOUBLE, values, values, MPI_REPLACE);
   if (failed == 0) failed = PetscSFBcastEnd(forest, MPI_DOUBLE, values, values, MPI_REPLACE);
   return failed;
+}
+
+dvi_ranks dvi__division_ranks(dvi_division *division)
+{
+  return (dvi_ranks){.size = sizeof(dvi_ranks),
+                     .rank = division->world.rank,
+                     .count = division->world.count,
+                     .refresh = refresh,
+                     .sum = dvi__world_sum,
+                     .largest = dvi__world_largest,
+                     .send = dvi__world_send,
+                     .receive = dvi__world_receive,
+                     .user = division};
 }
 
 /* ---- star forests ---- */
@@ -57,7 +60,7 @@ static PetscErrorCode drop_selection(selection *s)
 
 /* Own cells and ghosts of all degrees. */
 typedef struct selections {
-  selection own[DEGREES], ghost[DEGREES];
+  selection own[DVI__DEGREES], ghost[DVI__DEGREES];
 } selections;
 
 static PetscErrorCode select_all(const dvi_mesh *share, int rank, selections *s)
@@ -88,24 +91,26 @@ static PetscErrorCode plant(dvi_division *division, const selections *s, int64_t
   return PetscLayoutDestroy(&layout);
 }
 
-static PetscErrorCode plant_all(dvi_division *division, const selections *s, const dvi_mesh *mesh)
+static PetscErrorCode plant_all(dvi_division *division, const selections *s, int n,
+                                const int64_t *total)
 {
-  const int n = dvi_mesh_dimension(mesh);
-  for (int k = 0; k <= n; k++) PetscCall(plant(division, s, dvi_mesh_count(mesh, k), k));
+  for (int k = 0; k <= n; k++) PetscCall(plant(division, s, total[k], k));
   division->facts.neighbours = division->facts.messages_in[n];
   division->facts.rank = division->world.rank;
   division->facts.ranks = division->world.count;
   return 0;
 }
 
-static dvi_status plant_forests(dvi_division *division, const dvi_mesh *share, const dvi_mesh *mesh)
+dvi_status dvi__division_join(dvi_division *division, const dvi_mesh *share, const int64_t *total)
 {
+  const int n = dvi_mesh_dimension(share);
   selections s = {0};
   dvi_status status = dvi__world_agree(
       &division->world, dvi__check_petsc(select_all(share, division->world.rank, &s)));
   if (status == DVI_OK)
-    status = dvi__world_agree(&division->world, dvi__check_petsc(plant_all(division, &s, mesh)));
-  for (int k = 0; k < DEGREES; k++) {
+    status = dvi__world_agree(&division->world,
+                              dvi__check_petsc(plant_all(division, &s, n, total)));
+  for (int k = 0; k < DVI__DEGREES; k++) {
     (void)drop_selection(s.own + k);
     (void)drop_selection(s.ghost + k);
   }
@@ -133,35 +138,40 @@ static dvi_status choose(const dvi_division_options *options, dvi_division *divi
   const char *name = "blocks";
 #endif
   if (options != NULL && options->partitioner != NULL) name = options->partitioner;
-  if (strlen(name) >= NAME_SIZE)
+  if (strlen(name) >= DVI__NAME_SIZE)
     return dvi__fail(DVI_BAD_OPTION, "petsc: there is no partitioner \"%s\"", name);
   memcpy(division->partitioner, name, strlen(name) + 1);
   division->facts.partitioner = division->partitioner;
   return DVI_OK;
 }
 
+dvi_status dvi__check_enough(int parts, int64_t cells)
+{
+  if (cells >= parts) return DVI_OK;
+  return dvi__fail(DVI_BAD_ARGUMENT, "petsc: %d processes cannot share %lld cells: take fewer",
+                   parts, (long long)cells);
+}
+
 /* The processes have the same mesh, as far as the numbers of cells tell, with enough cells for the
  * parts. */
 static dvi_status check_mesh(const dvi_mesh *mesh, const dvi__world *world, int parts)
 {
-  int64_t count[2 * DEGREES] = {0};
+  int64_t count[2 * DVI__DEGREES] = {0};
   const int n = dvi_mesh_dimension(mesh);
-  for (int k = 0; k < DEGREES; k++) {
+  for (int k = 0; k < DVI__DEGREES; k++) {
     count[2 * k] = dvi_mesh_count(mesh, k);
     count[2 * k + 1] = -count[2 * k];
   }
-  if (MPI_Allreduce(MPI_IN_PLACE, count, 2 * DEGREES, MPI_INT64_T, MPI_MAX, world->comm) !=
+  if (MPI_Allreduce(MPI_IN_PLACE, count, 2 * DVI__DEGREES, MPI_INT64_T, MPI_MAX, world->comm) !=
       MPI_SUCCESS)
     return dvi__world_fail(world);
-  for (int k = 0; k < DEGREES; k++)
+  for (int k = 0; k < DVI__DEGREES; k++)
     if (count[2 * k] != -count[2 * k + 1])
       return dvi__fail(DVI_BAD_ARGUMENT,
                        "petsc: the mesh is not the same on all processes: they "
                        "have %lld to %lld cells of degree %d",
                        (long long)-count[2 * k + 1], (long long)count[2 * k], k);
-  if (count[2 * n] >= parts) return DVI_OK;
-  return dvi__fail(DVI_BAD_ARGUMENT, "petsc: %d processes cannot share %lld cells: take fewer",
-                   parts, (long long)count[2 * n]);
+  return dvi__check_enough(parts, count[2 * n]);
 }
 
 static dvi_status make(const dvi_mesh *mesh, dvi_division *division, dvi_mesh **share)
@@ -169,15 +179,8 @@ static dvi_status make(const dvi_mesh *mesh, dvi_division *division, dvi_mesh **
   const dvi__world *world = &division->world;
   const dvi__divider divider = {
       .world = world, .parts = world->count, .partitioner = division->partitioner};
-  const dvi_ranks ranks = {.size = sizeof ranks,
-                           .rank = world->rank,
-                           .count = world->count,
-                           .refresh = refresh,
-                           .sum = dvi__world_sum,
-                           .largest = dvi__world_largest,
-                           .user = division,
-                           .send = dvi__world_send,
-                           .receive = dvi__world_receive};
+  const dvi_ranks ranks = dvi__division_ranks(division);
+  int64_t total[DVI__DEGREES];
   DVI_TRY(check_mesh(mesh, world, world->count));
   int *owner = DVI_NEW(int, dvi_mesh_count(mesh, dvi_mesh_dimension(mesh)));
   dvi_status status = dvi__world_agree(
@@ -185,13 +188,25 @@ static dvi_status make(const dvi_mesh *mesh, dvi_division *division, dvi_mesh **
   if (status == DVI_OK) status = dvi__find_owners(mesh, &divider, owner);
   if (status == DVI_OK) status = dvi__world_agree(world, dvi_mesh_cut(mesh, owner, &ranks, share));
   dvi__release(owner);
-  return status == DVI_OK ? plant_forests(division, *share, mesh) : status;
+  for (int k = 0; k < DVI__DEGREES; k++) total[k] = dvi_mesh_count(mesh, k);
+  return status == DVI_OK ? dvi__division_join(division, *share, total) : status;
 }
 
 static dvi_status check_options(const dvi_division_options *options)
 {
   if (options == NULL || options->size == sizeof *options) return check_started();
   return dvi__fail(DVI_BAD_ARGUMENT, "petsc: set options.size to sizeof(dvi_division_options)");
+}
+
+dvi_status dvi__division_begin(const dvi_division_options *options, dvi_division **division)
+{
+  DVI_TRY(check_options(options));
+  dvi_division *made = DVI_NEW(dvi_division, 1);
+  if (made == NULL) return dvi__fail(DVI_NO_MEMORY, "petsc: no memory");
+  made->world.comm = MPI_COMM_NULL;
+  *division = made;
+  DVI_TRY(choose(options, made));
+  return dvi__world_join(options != NULL ? options->comm : MPI_COMM_NULL, &made->world);
 }
 
 dvi_status dvi_mesh_partition(const dvi_mesh *mesh, const dvi_division_options *options, int parts,
@@ -222,16 +237,11 @@ dvi_status dvi_mesh_divide(const dvi_mesh *mesh, const dvi_division_options *opt
     return dvi__fail(DVI_BAD_ARGUMENT, "petsc: a mesh and places for results are needed");
   *share = NULL;
   *division = NULL;
-  DVI_TRY(check_options(options));
-  dvi_division *made = DVI_NEW(dvi_division, 1);
-  if (made == NULL) return dvi__fail(DVI_NO_MEMORY, "petsc: no memory");
-  made->world.comm = MPI_COMM_NULL;
+  dvi_division *made = NULL;
+  dvi_status status = dvi__division_begin(options, &made);
   /* The sentence is the library's, and PETSc prints none. */
   (void)PetscPushErrorHandler(PetscReturnErrorHandler, NULL);
-  dvi_status status = choose(options, made);
-  if (status == DVI_OK)
-    status = dvi__world_join(options != NULL ? options->comm : MPI_COMM_NULL, &made->world);
-  if (status == DVI_OK) status = make(mesh, made, share);
+  if (status == DVI_OK && made != NULL) status = make(mesh, made, share);
   (void)PetscPopErrorHandler();
   if (status != DVI_OK) {
     dvi_mesh_destroy(share);
@@ -262,7 +272,7 @@ void dvi_division_destroy(dvi_division **division)
   PetscBool ended = PETSC_FALSE;
   if (division == NULL || *division == NULL) return;
   (void)PetscFinalized(&ended);
-  for (int k = 0; k < DEGREES && !ended; k++) (void)PetscSFDestroy(&(*division)->forest[k]);
+  for (int k = 0; k < DVI__DEGREES && !ended; k++) (void)PetscSFDestroy(&(*division)->forest[k]);
   if (!ended) dvi__world_leave(&(*division)->world);
   dvi__release(*division);
   *division = NULL;

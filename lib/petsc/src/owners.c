@@ -20,12 +20,6 @@ dvi_status dvi__check_petsc(PetscErrorCode code)
 
 /* ---- the graph of the n-cells ---- */
 
-/* Cells `first` to `last`-1 of the graph, in compressed rows. */
-typedef struct graph {
-  int64_t first, last;
-  PetscInt *start, *neighbour;
-} graph;
-
 /* Fill in the two n-cells at each facet, or -1. Of more than two the first ones count. */
 static int *find_sides(const dvi_matrix *d)
 {
@@ -41,7 +35,7 @@ static int *find_sides(const dvi_matrix *d)
   return side;
 }
 
-static PetscErrorCode fill_rows(const dvi_matrix *d, const int *side, graph *g)
+static PetscErrorCode fill_rows(const dvi_matrix *d, const int *side, dvi__graph *g)
 {
   PetscInt entries = 0;
   PetscCall(PetscMalloc1((size_t)(g->last - g->first + 1), &g->start));
@@ -59,7 +53,7 @@ static PetscErrorCode fill_rows(const dvi_matrix *d, const int *side, graph *g)
 }
 
 /* Make the graph of this process's cells. Its arrays are for PetscFree. */
-static dvi_status make_graph(const dvi_mesh *mesh, graph *g)
+static dvi_status make_graph(const dvi_mesh *mesh, dvi__graph *g)
 {
   dvi_matrix d;
   DVI_TRY(dvi_mesh_incidence(mesh, dvi_mesh_dimension(mesh) - 1, &d));
@@ -90,24 +84,23 @@ static dvi_status set_type(MatPartitioning partitioning, const char *name)
   return dvi__check_petsc(code);
 }
 
-static PetscErrorCode apply(MatPartitioning partitioning, const graph *g, PetscInt *owner)
+static PetscErrorCode apply(MatPartitioning partitioning, int64_t cells, PetscInt *owner)
 {
   IS parts;
   const PetscInt *part;
   PetscCall(MatPartitioningApply(partitioning, &parts));
   PetscCall(ISGetIndices(parts, &part));
-  PetscCall(PetscArraycpy(owner + g->first, part, (size_t)(g->last - g->first)));
+  PetscCall(PetscArraycpy(owner, part, (size_t)cells));
   PetscCall(ISRestoreIndices(parts, &part));
   return ISDestroy(&parts);
 }
 
-/* Find the owners of this process's cells. The graph's arrays become PETSc's. */
-static dvi_status partition(const dvi__divider *divider, int64_t cells, graph *g, PetscInt *owner)
+dvi_status dvi__partition(const dvi__divider *divider, dvi__graph *g, PetscInt *owner)
 {
   Mat adjacency = NULL;
   MatPartitioning partitioning = NULL;
   dvi_status status = dvi__check_petsc(
-      MatCreateMPIAdj(divider->world->comm, (PetscInt)(g->last - g->first), (PetscInt)cells,
+      MatCreateMPIAdj(divider->world->comm, (PetscInt)(g->last - g->first), (PetscInt)g->cells,
                       g->start, g->neighbour, NULL, &adjacency));
   if (status == DVI_OK)
     status = dvi__check_petsc(MatPartitioningCreate(divider->world->comm, &partitioning));
@@ -116,7 +109,7 @@ static dvi_status partition(const dvi__divider *divider, int64_t cells, graph *g
   if (status == DVI_OK) status = set_type(partitioning, divider->partitioner);
   if (status == DVI_OK)
     status = dvi__check_petsc(MatPartitioningSetNParts(partitioning, (PetscInt)divider->parts));
-  if (status == DVI_OK) status = dvi__check_petsc(apply(partitioning, g, owner));
+  if (status == DVI_OK) status = dvi__check_petsc(apply(partitioning, g->last - g->first, owner));
   (void)MatPartitioningDestroy(&partitioning);
   (void)MatDestroy(&adjacency);
   return status;
@@ -137,7 +130,8 @@ static dvi_status find_by_graph(const dvi_mesh *mesh, const dvi__divider *divide
                                 PetscInt *found)
 {
   const int rank = divider->world->rank, ranks = divider->world->count;
-  graph g = {.first = cells * rank / ranks, .last = cells * (rank + 1) / ranks};
+  dvi__graph g = {
+      .cells = cells, .first = cells * rank / ranks, .last = cells * (rank + 1) / ranks};
   const dvi_status made = found != NULL ? make_graph(mesh, &g)
                                         : dvi__fail(DVI_NO_MEMORY, "petsc: no memory for owners");
   dvi_status status = dvi__world_agree(divider->world, made);
@@ -146,7 +140,7 @@ static dvi_status find_by_graph(const dvi_mesh *mesh, const dvi__divider *divide
     (void)PetscFree(g.neighbour);
     return status;
   }
-  status = dvi__world_agree(divider->world, partition(divider, cells, &g, found));
+  status = dvi__world_agree(divider->world, dvi__partition(divider, &g, found + g.first));
   return status == DVI_OK ? dvi__check_petsc(gather(divider, cells, found)) : status;
 }
 

@@ -14,8 +14,17 @@ typedef struct dvi__divider {
   const char *partitioner;
 } dvi__divider;
 
+/* Cells `first` to `last`-1 of the graph of all `cells`, in compressed rows from PetscMalloc. */
+typedef struct dvi__graph {
+  int64_t cells, first, last;
+  PetscInt *start, *neighbour;
+} dvi__graph;
+
 /* Return the status of a call of PETSc, with a sentence if it failed. */
 dvi_status dvi__check_petsc(PetscErrorCode code);
+
+/* Find the owners [last-first] of this process's cells. The graph's arrays become PETSc's. */
+dvi_status dvi__partition(const dvi__divider *divider, dvi__graph *graph, PetscInt *owner);
 
 /* Find the owners [n-cells] of the mesh, the same on all processes. */
 dvi_status dvi__find_owners(const dvi_mesh *mesh, const dvi__divider *divider, int *owner);

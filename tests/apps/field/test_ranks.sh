@@ -31,4 +31,14 @@ fi
 as_one 3 wave.yaml
 together 2 'kepler is none' kepler
 killed 3 1 2
+
+# A mesh that processes read in parts.
+sed 's/^mesh: .*/mesh: {file: torus.h5}/' torus.yaml >parts.yaml
+"$dvi" mesh bcc-torus --cells 3,3,3 --size 1,1,1 --write torus.h5 >out ||
+  fail "torus.h5 is not written"
+"$dvi" run parts.yaml >out 2>err && fail "one process reads a mesh in parts"
+says err "several processes read 'torus.h5' in parts (mpirun -np 2 dvi run)" parts.yaml
+"$dvi" run torus.yaml --columns energy,gauss,e --out one.csv || fail "torus.yaml: dvi run fails"
+by 3 parts.yaml --columns energy,gauss,e --out all.csv || fail "parts.yaml: 3 processes fail"
+same one.csv all.csv "3 processes read torus.h5"
 exit $((failures > 0))

@@ -60,6 +60,31 @@ extern "C" {
 dvi_status dvi_mesh_divide(const dvi_mesh *mesh, const dvi_division_options *options,
                            dvi_mesh **share, dvi_division **division);
 
+/** Write a whole mesh to a file of HDF5 that dvi_mesh_read_divided reads in parts.
+ *
+ *  One process writes it, which needs neither MPI nor PETSc to be started. A file of this name is
+ *  replaced only when all is written.
+ *
+ *  @retval DVI_IO_ERROR     the file could not be written
+ *  @retval DVI_UNSUPPORTED  the mesh is a share
+ *  @retval DVI_BAD_ARGUMENT a mesh and a path are needed
+ *  @retval DVI_NO_MEMORY    there is no memory */
+dvi_status dvi_mesh_write_divided(const dvi_mesh *mesh, const char *path);
+
+/** Read this process's share of a mesh from a file of dvi_mesh_write_divided. It is the one of
+ *  dvi_mesh_divide, but no process holds the whole mesh at any time: each of them reads a part of
+ *  the file, and gets the cells of its share from those that have read them.
+ *
+ *  @param path  the file, the same for all processes
+ *  @param options, share, division  as for dvi_mesh_divide
+ *  If one process fails, all of them do, with its status.
+ *
+ *  @retval DVI_IO_ERROR  the file could not be opened
+ *  @retval DVI_BAD_FILE  it is cut short, or no file of a mesh
+ *  @retval (others)      as dvi_mesh_divide, and as dvi_mesh_create for the cells of a share */
+dvi_status dvi_mesh_read_divided(const char *path, const dvi_division_options *options,
+                                 dvi_mesh **share, dvi_division **division);
+
 /** Find owners of the n-cells of a mesh, among any number of processes. Few may foresee how many
  *  would share it: the owners are not the ones that dvi_mesh_divide finds on another number of
  *  processes, and there are as many cells and neighbours.

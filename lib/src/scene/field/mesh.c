@@ -98,17 +98,43 @@ static bool generate(dvi_scene *scene, const dvi__tree *section, const dvi__tree
          has_all_axes(scene, section, generator->text);
 }
 
+static bool is_in_parts(const char *path)
+{
+  const size_t length = strlen(path);
+  return length > 3 && strcmp(path + length - 3, ".h5") == 0;
+}
+
+/* Read this process's share of a mesh from a file of which each process reads a part. */
+static bool read_parts(dvi_scene *scene, const dvi__tree *file, const char *path, int space)
+{
+  const dvi_scene_division *division = scene->division;
+  if (space != 0)
+    return dvi__complain(scene->complaint, DVI_BAD_OPTION, file->span,
+                         "the points of '%s' have the coordinates that were written: leave space "
+                         "out",
+                         file->text);
+  if (division == NULL || division->read == NULL)
+    return dvi__complain(scene->complaint, DVI_UNSUPPORTED, file->span,
+                         "several processes read '%s' in parts (mpirun -np 2 dvi run); for one "
+                         "process take a file of MSH, OFF or PLY",
+                         file->text);
+  return report_file(scene, file, division->read(path, &scene->field->mesh, division->user));
+}
+
 static bool read_file(dvi_scene *scene, const dvi__tree *section, const dvi__tree *file)
 {
   static const char *const known[] = {"file", "space"};
   dvi_mesh_read_options options = {.size = sizeof options};
   const char *path;
   const dvi__tree *space = dvi__tree_find(section, "space");
-  return dvi__want_keys(scene, section, "a mesh from a file", 2, known) &&
-         dvi__want_text(scene, file, "file") &&
-         (space == NULL || dvi__tree_whole(scene, space, "space", 1, &options.space)) &&
-         dvi__scene_place_mesh(scene, file->span, file->text, &path) &&
-         report_file(scene, file, dvi_mesh_read(path, &options, &scene->field->mesh));
+  if (!dvi__want_keys(scene, section, "a mesh from a file", 2, known) ||
+      !dvi__want_text(scene, file, "file") ||
+      (space != NULL && !dvi__tree_whole(scene, space, "space", 1, &options.space)) ||
+      !dvi__scene_place_mesh(scene, file->span, file->text, &path))
+    return false;
+  return is_in_parts(path)
+             ? read_parts(scene, file, path, options.space)
+             : report_file(scene, file, dvi_mesh_read(path, &options, &scene->field->mesh));
 }
 
 /* ---- names ---- */
@@ -149,6 +175,7 @@ static bool take_share(dvi_scene *scene, const dvi__tree *section)
     return dvi__complain(scene->complaint, DVI_UNSUPPORTED, section->span,
                          "several processes share fields of waves, Maxwell's and solids on meshes, "
                          "and no grids of yee and densities");
+  if (dvi_mesh_share_numbers(f->mesh, 0) != NULL) return true;
   if (!report(scene, section, scene->division->divide(f->mesh, &share, scene->division->user)))
     return false;
   dvi_mesh_destroy(&f->mesh);

@@ -1,0 +1,142 @@
+#define _XOPEN_SOURCE 700
+/* Files of meshes that are cut short, or have what no mesh has. */
+#include <dvi/petsc.h>
+#include <hdf5.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "core/memory.h"
+#include "expect.h"
+#include "parts.h"
+#include "support/shares/shares.h"
+#include "support/meshes.h"
+
+static char path[64];
+
+/* The first process writes a mesh with a boundary and two parts. */
+static void write_mesh(void)
+{
+  dvi_mesh *mesh = with_core_and_exit(staggered_mesh(4, 4), NULL);
+  expect(rank > 0 || dvi_mesh_write_divided(mesh, path) == DVI_OK, "not written", "refusals");
+  dvi_mesh_destroy(&mesh);
+}
+
+/* All processes fail with this status, and a word of the sentence. */
+static void refuse(const char *name, dvi_status status, const char *word)
+{
+  dvi_mesh *share;
+  dvi_division *division;
+  const dvi_division_options options = {.size = sizeof options, .partitioner = "blocks"};
+  const int is_refused = dvi_mesh_read_divided(name, &options, &share, &division) == status &&
+                         share == NULL && division == NULL;
+  expect(is_refused, word, "refusal");
+  expect(strstr(dvi_last_error(), word) != NULL || strstr(dvi_last_error(), "whose sentence"), word,
+         "sentence");
+  dvi_mesh_destroy(&share);
+  dvi_division_destroy(&division);
+}
+
+/* Write the first numbers of a dataset anew. Returns whether it worked. */
+static int change(const char *name, hid_t type, hsize_t count, const void *numbers)
+{
+  const hsize_t start[2] = {0, 0}, extent[2] = {1, count};
+  const hid_t file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT),
+              set = H5Dopen2(file, name, H5P_DEFAULT), place = H5Dget_space(set);
+  const int axes = H5Sget_simple_extent_ndims(place);
+  const hid_t memory = H5Screate_simple(1, &count, NULL);
+  int good = H5Sselect_hyperslab(place, H5S_SELECT_SET, start, NULL,
+                                 axes == 2 ? extent : extent + 1, NULL) >= 0;
+  good = good && H5Dwrite(set, type, memory, place, H5P_DEFAULT, numbers) >= 0;
+  (void)H5Sclose(memory);
+  (void)H5Sclose(place);
+  (void)H5Dclose(set);
+  return H5Fclose(file) >= 0 && good;
+}
+
+static void refuse_changed(const char *name, hid_t type, hsize_t count, const void *numbers,
+                           dvi_status status, const char *word)
+{
+  write_mesh();
+  expect(rank > 0 || change(name, type, count, numbers), name, "changed");
+  refuse(path, status, word);
+}
+
+static void refuse_changes(void)
+{
+  const int beyond[3] = {0, 1, 1000}, before[3] = {0, 1, -1}, twice[3] = {1, 1, 2},
+            first[3] = {0, 2, 1};
+  const int64_t edges[2] = {27, 3}, cells[3] = {27, 62, 1};
+  const int8_t turn = 3;
+  const double metric = 2, point[2] = {0, 0. / 0.};
+  refuse_changed("cells", H5T_NATIVE_INT, 3, beyond, DVI_BAD_FILE, "has vertex 1000");
+  refuse_changed("cells", H5T_NATIVE_INT, 3, before, DVI_BAD_FILE, "has vertex -1");
+  refuse_changed("cells", H5T_NATIVE_INT, 3, twice, DVI_BAD_ARGUMENT, "twice");
+  refuse_changed("counts", H5T_NATIVE_INT64, 3, cells, DVI_BAD_FILE, "cells, and counts");
+  refuse_changed("counts", H5T_NATIVE_INT64, 2, edges, DVI_BAD_FILE, "it counts 3");
+  refuse_changed("orientation", H5T_NATIVE_INT8, 1, &turn, DVI_BAD_FILE, "orientation 3");
+  refuse_changed("metric", H5T_NATIVE_DOUBLE, 1, &metric, DVI_BAD_ARGUMENT, "metric of axis 0");
+  refuse_changed("points", H5T_NATIVE_DOUBLE, 2, point, DVI_BAD_ARGUMENT, "coordinate 1");
+  refuse_changed("parts/1/cells_1", H5T_NATIVE_INT, 3, beyond, DVI_BAD_FILE, "number 1000");
+  refuse_changed("parts/2/cells_0", H5T_NATIVE_INT, 3, first, DVI_BAD_FILE, "number 1 in row 2");
+}
+
+static void refuse_cut(void)
+{
+  long size = 0;
+  FILE *stream = rank == 0 ? fopen(path, "rb") : NULL;
+  if (stream != NULL && fseek(stream, 0, SEEK_END) == 0) size = ftell(stream);
+  if (stream != NULL) (void)fclose(stream);
+  (void)MPI_Bcast(&size, 1, MPI_LONG, 0, MPI_COMM_WORLD);
+  for (long cut = size - 1; cut > 0; cut = cut / 3) {
+    expect(rank > 0 || truncate(path, cut) == 0, "cut", "file");
+    refuse(path, DVI_BAD_FILE, "cut short");
+  }
+}
+
+/* If memory fails on the last process alone, all of them fail alike. */
+static void refuse_memory(void)
+{
+  dvi_mesh *share;
+  dvi_division *division;
+  const dvi_division_options options = {.size = sizeof options, .partitioner = "blocks"};
+  dvi_status status = DVI_NO_MEMORY;
+  for (int successes = 1; status == DVI_NO_MEMORY; successes++) {
+    if (rank == ranks - 1) dvi__fail_allocations_after(successes);
+    status = dvi_mesh_read_divided(path, &options, &share, &division);
+    dvi__fail_allocations_after(-1);
+    expect(status == DVI_OK || (status == DVI_NO_MEMORY && share == NULL && division == NULL),
+           "memory", "file");
+    dvi_mesh_destroy(&share);
+    dvi_division_destroy(&division);
+  }
+}
+
+static void refuse_share(void)
+{
+  dvi_mesh *share = NULL;
+  dvi_division *division = NULL;
+  const dvi_division_options many = {.size = sizeof many, .partitioner = "nobody"};
+  expect(dvi_mesh_read_divided(path, NULL, &share, &division) == DVI_OK, "share", "file");
+  expect(dvi_mesh_write_divided(share, "none.h5") == DVI_UNSUPPORTED, "a share", "file");
+  expect(dvi_mesh_write_divided(NULL, path) == DVI_BAD_ARGUMENT, "no mesh", "file");
+  expect(dvi_mesh_read_divided(NULL, NULL, &share, &division) == DVI_BAD_ARGUMENT, "path", "file");
+  dvi_mesh_destroy(&share);
+  dvi_division_destroy(&division);
+  expect(ranks == 1 || ranks == 4 ||
+             dvi_mesh_read_divided(path, &many, &share, &division) == DVI_BAD_OPTION,
+         "nobody", "file");
+}
+
+void check_refused_parts(void)
+{
+  parts_path(path, sizeof path, "refused");
+  refuse("none.h5", DVI_IO_ERROR, "none.h5");
+  write_mesh();
+  refuse_share();
+  refuse_memory();
+  refuse_changes();
+  refuse_cut();
+  if (rank == 0) (void)unlink(path);
+}
