@@ -102,6 +102,9 @@ typedef struct dvi_ranks {
   /** Set numbers [count] to the largest ones of all processes. */
   int (*largest)(int count, double *number, void *user);
   void *user;
+  /** What solves equations on all processes together, as that of dvi_mesh_divide (<dvi/petsc.h>).
+   *  What needs it is refused without it. May be NULL */
+  const struct dvi_ranks_solver *solver;
 } dvi_ranks;
 
 #ifdef __cplusplus

@@ -7,6 +7,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "owners.h"
+#include "solver.h"
 
 enum { DEGREES = DVI_MESH_DIMENSION_MAX + 1, NAME_SIZE = 32 };
 
@@ -172,7 +173,8 @@ static dvi_status make(const dvi_mesh *mesh, dvi_division *division, dvi_mesh **
                            .refresh = refresh,
                            .sum = dvi__world_sum,
                            .largest = dvi__world_largest,
-                           .user = division};
+                           .user = division,
+                           .solver = &dvi__solver_of_petsc};
   DVI_TRY(check_mesh(mesh, world));
   int *owner = DVI_NEW(int, dvi_mesh_count(mesh, dvi_mesh_dimension(mesh)));
   dvi_status status = dvi__world_agree(

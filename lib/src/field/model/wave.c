@@ -128,7 +128,7 @@ static dvi_status make(dvi_field *field, const dvi_wave_terms *terms)
   if (terms->potential != NULL) field->potential = *terms->potential;
   DVI_TRY(dvi__field_fix(field, terms));
   DVI_TRY(make_equations(field, terms));
-  return dvi__agree(field->mesh, dvi__field_find_components(field));
+  return dvi__field_find_components(field);
 }
 
 dvi_status dvi_wave_create(const dvi_wave_terms *terms, dvi_field **field)
