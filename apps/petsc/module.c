@@ -37,13 +37,15 @@ static void tell(int rank, int degree, mesh_division *told)
   int n = DVI_MESH_DIMENSION_MAX;
   dvi_division_facts_of(division, &facts);
   while (n > 0 && facts.owned[n] == 0) n--;
-  int64_t number[] = {facts.owned[n], facts.ghosts[n], facts.bytes_in[degree], facts.neighbours};
-  (void)MPI_Bcast(number, 4, MPI_INT64_T, rank, MPI_COMM_WORLD);
+  int64_t number[] = {facts.owned[n], facts.ghosts[n], facts.bytes_in[degree],
+                      facts.messages_in[degree], facts.neighbours};
+  (void)MPI_Bcast(number, sizeof number / sizeof *number, MPI_INT64_T, rank, MPI_COMM_WORLD);
   *told = (mesh_division){.partitioner = facts.partitioner,
                           .owned = number[0],
                           .ghosts = number[1],
                           .bytes_in = number[2],
-                          .neighbours = (int)number[3]};
+                          .messages_in = (int)number[3],
+                          .neighbours = (int)number[4]};
 }
 
 /* Wait until a request is met, for good or only for a while. */

@@ -12,7 +12,8 @@ typedef struct mesh_division {
   const char *partitioner;
   int64_t owned, ghosts; /**< cells */
   int64_t bytes_in;      /**< of a form, once */
-  int neighbours;
+  int messages_in;       /**< that bring them */
+  int neighbours;        /**< processes that own ghosts */
 } mesh_division;
 
 /** What a process has at its end. */

@@ -33,6 +33,7 @@ typedef struct dvi_division_facts {
   int64_t owned[DVI_MESH_DIMENSION_MAX + 1];    /**< k-cells that belong to this process */
   int64_t ghosts[DVI_MESH_DIMENSION_MAX + 1];   /**< those that belong to others */
   int64_t bytes_in[DVI_MESH_DIMENSION_MAX + 1]; /**< that a refresh of a k-form receives */
+  int messages_in[DVI_MESH_DIMENSION_MAX + 1];  /**< in as many messages */
   int neighbours;                               /**< processes that own ghosts */
 } dvi_division_facts;
 
