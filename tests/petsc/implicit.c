@@ -1,7 +1,8 @@
 /* Equations that are solved on the shares of MPI's processes have the same bits for any number of
  * processes and any division, and are the solutions of one process by a factor up to roundoff. It
  * prints hashes, which implicit.sh compares. Usage: mpirun -np N implicit */
-#include <dvi/field.h>
+#include <dvi/integrator.h>
+#include <dvi/march.h>
 #include <dvi/petsc.h>
 #include <math.h>
 #include <stdio.h>
@@ -147,6 +148,129 @@ static void check_problem(const dvi_mesh *mesh, const problem *p, const char *pa
   free(whole);
 }
 
+/* ---- motions ---- */
+
+enum { STEPS = 40 };
+
+/* Heights at the start. */
+static double height(const double *x)
+{
+  return x[0] * (1 - x[0]) * cos(2 * x[1]);
+}
+
+/* Fill in the start of all unknowns. The others have what is fixed. */
+static void fill(const dvi_mesh *mesh, const dvi_field *field, double *q)
+{
+  int64_t n;
+  const double *point = dvi_mesh_points(mesh);
+  const int *cell = dvi_field_unknowns(field, &n);
+  for (int64_t i = 0; i < n; i++) q[i] = height(point + cell[i] * dvi_mesh_space(mesh));
+}
+
+/* Move the whole mesh by the integrator's method, whose factors are KLU's. */
+static dvi_status move_whole(const dvi_mesh *mesh, const problem *p, double h, double *u,
+                             double *energy)
+{
+  int64_t n;
+  dvi_system *system = NULL;
+  dvi_integrator *integrator = NULL;
+  dvi_field *field = make_field(mesh, p);
+  (void)dvi_field_unknowns(field, &n);
+  double *q = calloc((size_t)(2 * n), sizeof *q);
+  fill(mesh, field, q);
+  dvi_status status = dvi_field_system(field, &system);
+  if (status == DVI_OK) status = dvi_integrator_create(system, "midpoint", &integrator);
+  if (status == DVI_OK) status = dvi_integrator_start_velocity(integrator, 0, q, q + n);
+  for (int i = 0; i < STEPS && status == DVI_OK; i++) status = dvi_integrator_step(integrator, h);
+  double invariant[8] = {0}; /* the energy is the first one */
+  if (status == DVI_OK)
+    status = dvi_system_invariants(system, STEPS * h, dvi_integrator_q(integrator),
+                                   dvi_integrator_p(integrator), invariant);
+  *energy = invariant[0];
+  if (status == DVI_OK) status = dvi_field_lift(field, dvi_integrator_q(integrator), u);
+  dvi_integrator_destroy(&integrator);
+  dvi_system_destroy(&system);
+  dvi_field_destroy(&field);
+  free(q);
+  return status;
+}
+
+/* Start a march of a share. */
+static dvi_status begin(const dvi_mesh *share, const dvi_field *field, double h, dvi_march **march)
+{
+  int64_t n;
+  const dvi_march_options options = {.size = sizeof options, .method = "midpoint", .step = h};
+  double *u = calloc((size_t)dvi_mesh_count(share, 0), sizeof *u);
+  const int *cell = dvi_field_unknowns(field, &n);
+  double *q = calloc((size_t)n + 1, sizeof *q);
+  fill(share, field, q);
+  for (int64_t i = 0; i < n; i++) u[cell[i]] = q[i];
+  dvi_status status = dvi_march_create(field, &options, march);
+  const dvi_march_state state = {.size = sizeof state, .A = u};
+  if (status == DVI_OK) status = dvi_march_start(*march, &state);
+  free(q);
+  free(u);
+  return status;
+}
+
+/* A second march that loads the state halfway goes on with the same bits. */
+static void check_saved(const dvi_mesh *share, const dvi_field *field, double h, dvi_march *march)
+{
+  static unsigned char bytes[1 << 20];
+  size_t size = 0;
+  double here, there = 0;
+  dvi_march *other = NULL;
+  dvi_status status = begin(share, field, h, &other);
+  if (status == DVI_OK) status = dvi_march_save_memory(march, bytes, sizeof bytes, &size);
+  if (status == DVI_OK) status = dvi_march_load_memory(other, bytes, size);
+  if (status == DVI_OK) status = dvi_march_advance(other, STEPS * h);
+  if (status == DVI_OK) status = dvi_march_observe(other, 0, &there);
+  expect(status == DVI_OK, "a saved state", (double)status);
+  status = dvi_march_advance(march, STEPS * h);
+  expect(status == DVI_OK && dvi_march_observe(march, 0, &here) == DVI_OK, "a march", 0);
+  expect(here == there, "a saved state goes on otherwise", here - there);
+  dvi_march_destroy(&other);
+}
+
+static void check_motion(const dvi_mesh *mesh, const problem *p, const char *partitioner)
+{
+  const double h = 0.125; /* several times what leapfrog takes */
+  const dvi_division_options options = {.size = sizeof options, .partitioner = partitioner};
+  const size_t vertices = (size_t)dvi_mesh_count(mesh, 0);
+  double *u = calloc(vertices, sizeof *u), *whole = calloc(vertices, sizeof *u), energy = 0,
+         first = 0, last = 0;
+  uint64_t bits;
+  dvi_mesh *share;
+  dvi_division *division;
+  dvi_march *march = NULL;
+  expect(dvi_mesh_divide(mesh, &options, &share, &division) == DVI_OK, "no division", 0);
+  dvi_field *field = make_field(share, p);
+  expect(move_whole(mesh, p, h, whole, &energy) == DVI_OK, "no motion of the whole mesh", 0);
+  expect(begin(share, field, h, &march) == DVI_OK, "no march", 0);
+  expect(dvi_march_observe(march, 0, &first) == DVI_OK, "no energy", 0);
+  expect(dvi_march_advance(march, STEPS / 2 * h) == DVI_OK, "no step", 0);
+  check_saved(share, field, h, march);
+  expect(dvi_march_observe(march, 0, &last) == DVI_OK, "no energy", 0);
+  expect(dvi_march_sample(march, DVI_FORM_A, 0, NULL, u) == DVI_OK, "no values", 0);
+  expect(distance(share, u, whole) < 2e-13, "another motion", distance(share, u, whole));
+  expect(fabs(last - energy) < 1e-12, "another energy than the system's", last - energy);
+  expect(fabs(last - first) < (p->has_potential ? 1e-2 : 1e-13), "a drift", last - first);
+  tell("motion", hash_values(share, u), 0);
+  memcpy(&bits, &last, sizeof bits);
+  tell("energy", bits, 0);
+  if (getenv("DVI_TELL") != NULL && rank == 0)
+    (void)fprintf(stderr, "difference %.2g, energy %.17g, of the system %.17g, drift %.2g\n",
+                  distance(share, u, whole), last, energy, last - first);
+  dvi_march_destroy(&march);
+  dvi_field_destroy(&field);
+  dvi_mesh_destroy(&share);
+  dvi_division_destroy(&division);
+  free(u);
+  free(whole);
+}
+
+/* ---- meshes ---- */
+
 /* The mesh is destroyed. */
 static void check_mesh(dvi_mesh *mesh)
 {
@@ -155,6 +279,8 @@ static void check_mesh(dvi_mesh *mesh)
     check_problem(mesh, &(problem){.is_fixed = 1}, partitioners[k]);
     check_problem(mesh, &(problem){0}, partitioners[k]);
     check_problem(mesh, &(problem){.is_fixed = 1, .has_potential = 1}, partitioners[k]);
+    check_motion(mesh, &(problem){.is_fixed = 1}, partitioners[k]);
+    check_motion(mesh, &(problem){.has_potential = 1}, partitioners[k]);
   }
   dvi_mesh_destroy(&mesh);
 }

@@ -190,11 +190,10 @@ static PetscErrorCode make_kernel(solver *s)
 {
   const dvi__elliptic *e = &s->equations;
   MatNullSpace kernel;
+  if (e->components == 0) return 0;
   PetscCall(PetscCalloc1((size_t)e->components, &s->members));
   for (int64_t i = 0; i < e->unknowns; i++)
-    if (e->component != NULL && e->component[i] >= 0 && s->place[i] < s->A.own)
-      s->members[e->component[i]]++;
-  if (e->components == 0) return 0;
+    if (e->component[i] >= 0 && s->place[i] < s->A.own) s->members[e->component[i]]++;
   PetscCallMPI(
       MPI_Allreduce(MPI_IN_PLACE, s->members, (int)e->components, MPIU_INT, MPI_SUM, s->A.comm));
   PetscCall(MatNullSpaceCreate(s->A.comm, PETSC_FALSE, 0, NULL, &kernel));
