@@ -109,6 +109,9 @@ typedef struct dvi_ranks {
   /** Take the numbers that another process has sent by its first call of `send` that has not been
    *  taken, at most `most` of them, and wait for them. */
   int (*receive)(int from, int most, double *number, int *count, void *user);
+  /** What solves equations on all processes together, as that of dvi_mesh_divide (<dvi/petsc.h>).
+   *  What needs it is refused without it. May be NULL */
+  const struct dvi_ranks_solver *solver;
 } dvi_ranks;
 
 #ifdef __cplusplus

@@ -6,6 +6,7 @@
 #include "core/status.h"
 #include "division.h"
 #include "owners.h"
+#include "solver.h"
 
 /* ---- how processes speak with each other ---- */
 
@@ -28,6 +29,7 @@ dvi_ranks dvi__division_ranks(dvi_division *division)
                      .largest = dvi__world_largest,
                      .send = dvi__world_send,
                      .receive = dvi__world_receive,
+                     .solver = &dvi__solver_of_petsc,
                      .user = division};
 }
 

@@ -36,21 +36,20 @@ static PetscErrorCode number_own(dvi__operator *made)
 
 /* ---- of a share ---- */
 
-/* Give each unknown its column: own ones first, and ghosts behind them, both in their order. */
-static void place_unknowns(const dvi__unknowns *u, int rank, PetscInt own, PetscInt *place)
+PetscErrorCode dvi__place_unknowns(MPI_Comm comm, const dvi__unknowns *unknowns, PetscInt *place,
+                                   PetscInt *own)
 {
-  const int *owner = dvi_mesh_share_owners(u->share, u->degree);
-  PetscInt here = 0, elsewhere = own;
-  for (int64_t i = 0; i < u->count; i++)
-    place[i] = owner[u->cell[i]] == rank ? here++ : elsewhere++;
-}
-
-static PetscInt count_own(const dvi__unknowns *u, int rank)
-{
-  const int *owner = dvi_mesh_share_owners(u->share, u->degree);
-  PetscInt own = 0;
-  for (int64_t i = 0; i < u->count; i++) own += owner[u->cell[i]] == rank;
-  return own;
+  const int *owner = dvi_mesh_share_owners(unknowns->share, unknowns->degree),
+            *cell = unknowns->cell;
+  PetscMPIInt rank;
+  PetscInt here = 0;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  *own = 0;
+  for (int64_t i = 0; i < unknowns->count; i++) *own += owner[cell[i]] == rank;
+  PetscInt elsewhere = *own;
+  for (int64_t i = 0; i < unknowns->count; i++)
+    place[i] = owner[cell[i]] == rank ? here++ : elsewhere++;
+  return 0;
 }
 
 /* Join the ghosts to their owners by the numbers of the cells in the whole mesh. */
@@ -103,14 +102,11 @@ PetscErrorCode dvi__operator_of_share(MPI_Comm comm, const dvi__unknowns *unknow
                                       const dvi_matrix *A, dvi__operator *made)
 {
   const int64_t *number = dvi_mesh_share_numbers(unknowns->share, unknowns->degree);
-  PetscMPIInt rank;
-  PetscInt *place;
+  PetscInt *place, own;
   *made = (dvi__operator){.comm = comm};
-  PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  const PetscInt own = count_own(unknowns, rank);
-  PetscCall(take_columns(own, (PetscInt)unknowns->count - own, made));
   PetscCall(PetscMalloc1((size_t)unknowns->count, &place));
-  place_unknowns(unknowns, rank, own, place);
+  PetscCall(dvi__place_unknowns(comm, unknowns, place, &own));
+  PetscCall(take_columns(own, (PetscInt)unknowns->count - own, made));
   for (int64_t i = 0; i < unknowns->count; i++)
     made->number[place[i]] = (PetscInt)number[unknowns->cell[i]];
   PetscCall(copy_rows(A, place, made));
@@ -204,11 +200,12 @@ static PetscErrorCode copy_assembled(Mat A, dvi__operator *made)
   return PetscFree(key);
 }
 
-PetscErrorCode dvi__operator_of_matrix(Mat A, const PetscInt *number, dvi__operator *made)
+PetscErrorCode dvi__operator_of_matrix(MPI_Comm comm, Mat A, const PetscInt *number,
+                                       dvi__operator *made)
 {
   PetscInt ghosts, *ghost, own, *place;
   PetscLayout layout;
-  *made = (dvi__operator){.comm = PetscObjectComm((PetscObject)A)};
+  *made = (dvi__operator){.comm = comm};
   PetscCall(find_ghosts(A, &ghosts, &ghost));
   PetscCall(MatGetLocalSize(A, NULL, &own));
   PetscCall(take_columns(own, ghosts, made));

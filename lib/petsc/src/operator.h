@@ -31,8 +31,14 @@ typedef struct dvi__unknowns {
 PetscErrorCode dvi__operator_of_share(MPI_Comm comm, const dvi__unknowns *unknowns,
                                       const dvi_matrix *A, dvi__operator *made);
 
+/* Give the unknowns [count] their columns in such an operator: own ones first. Returns their number.
+ */
+PetscErrorCode dvi__place_unknowns(MPI_Comm comm, const dvi__unknowns *unknowns, PetscInt *place,
+                                   PetscInt *own);
+
 /* Make the operator of an assembled matrix. `number` [own columns] is theirs. */
-PetscErrorCode dvi__operator_of_matrix(Mat A, const PetscInt *number, dvi__operator *made);
+PetscErrorCode dvi__operator_of_matrix(MPI_Comm comm, Mat A, const PetscInt *number,
+                                       dvi__operator *made);
 
 PetscErrorCode dvi__operator_clear(dvi__operator *made);
 

@@ -2,18 +2,16 @@
 
 #include <math.h>
 
-#include "num/accumulator.h"
-
 /* The table of a vector's operations has no public names beyond a few (VecSetOperation). */
 #include <petsc/private/vecimpl.h>
 
 /* ---- sums over all processes ---- */
 
-static PetscErrorCode sum_of_all(Vec x, dvi__accumulator *sum, PetscScalar *value)
+PetscErrorCode dvi__sum_of_world(MPI_Comm comm, dvi__accumulator *sum, PetscScalar *value)
 {
   dvi__accumulator_carry(sum);
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum->number, DVI__SUM_NUMBERS, MPI_INT64_T, MPI_SUM,
-                             PetscObjectComm((PetscObject)x)));
+  PetscCallMPI(
+      MPI_Allreduce(MPI_IN_PLACE, sum->number, DVI__SUM_NUMBERS, MPI_INT64_T, MPI_SUM, comm));
   *value = dvi__accumulator_value(sum);
   return 0;
 }
@@ -27,7 +25,7 @@ static PetscErrorCode dot(Vec x, Vec y, PetscScalar *value)
   dvi__accumulate_products(&sum, x->map->n, a, b, NULL);
   PetscCall(VecRestoreArrayRead(x, &a));
   PetscCall(VecRestoreArrayRead(y, &b));
-  return sum_of_all(x, &sum, value);
+  return dvi__sum_of_world(PetscObjectComm((PetscObject)x), &sum, value);
 }
 
 static PetscErrorCode dots(Vec x, PetscInt count, const Vec y[], PetscScalar *value)
@@ -55,7 +53,7 @@ static PetscErrorCode sum_of_sizes(Vec x, PetscReal *value)
   PetscCall(VecGetArrayRead(x, &a));
   for (PetscInt i = 0; i < x->map->n; i++) dvi__accumulate(&sum, fabs(a[i]));
   PetscCall(VecRestoreArrayRead(x, &a));
-  return sum_of_all(x, &sum, value);
+  return dvi__sum_of_world(PetscObjectComm((PetscObject)x), &sum, value);
 }
 
 static PetscErrorCode norm(Vec x, NormType type, PetscReal *value)

@@ -6,7 +6,12 @@
 #define DVI_PETSC_VECTOR_H
 #include <petscvec.h>
 
+#include "num/accumulator.h"
+
 /* Make a vector of `rows` numbers on this process. Its duplicates are such vectors, too. */
 PetscErrorCode dvi__vector_create(MPI_Comm comm, PetscInt rows, Vec *vector);
+
+/* Give the sum of all processes' sums, rounded once. */
+PetscErrorCode dvi__sum_of_world(MPI_Comm comm, dvi__accumulator *sum, PetscScalar *value);
 
 #endif

@@ -7,6 +7,7 @@
 #include "field/mesh/share.h"
 #include "field/step/bound.h"
 #include "field/step/leapfrog.h"
+#include "field/step/midpoint.h"
 #include "field/tents/tents.h"
 
 /* A method, and whether its name fits a mesh. */
@@ -25,9 +26,11 @@ static const method methods[] = {
     {"yee", 1, dvi__leapfrog_create, NULL},
     {"avi", 0, dvi__avi_march_create, dvi__avi_march_stability},
     {"tents", 0, dvi__tents_march, dvi__tents_march_stability},
+    /* Whole meshes have it by the integrators of systems. */
+    {"midpoint", 0, dvi__midpoint_create, NULL},
 };
 
-enum { METHODS = sizeof methods / sizeof *methods };
+enum { ALL = sizeof methods / sizeof *methods, METHODS = ALL - 1 };
 
 const char *dvi_march_method_name(int i)
 {
@@ -36,9 +39,9 @@ const char *dvi_march_method_name(int i)
 
 /* ---- checks ---- */
 
-static dvi_status check_field(const dvi_field *field)
+static dvi_status check_field(const dvi_field *field, const method *found)
 {
-  if (field->potential.density != NULL)
+  if (field->potential.density != NULL && found->create != dvi__midpoint_create)
     return dvi__fail(DVI_UNSUPPORTED,
                      "march: the field has a potential, which marches do not take; verlet and the "
                      "other methods of dvi_field_system do");
@@ -50,14 +53,14 @@ static dvi_status find(const char *text, const method **found, const char **rest
 {
   const size_t length = strcspn(text, ":");
   *rest = text[length] == ':' ? text + length + 1 : "";
-  for (int i = 0; i < METHODS; i++) {
+  for (int i = 0; i < ALL; i++) {
     *found = methods + i;
     if (strlen(methods[i].name) == length && strncmp(methods[i].name, text, length) == 0)
       return DVI_OK;
   }
   return dvi__fail(DVI_BAD_OPTION,
                    "march: there is no method \"%.*s\"; there are leapfrog (also called yee and "
-                   "bossavit-kettunen), avi and tents",
+                   "bossavit-kettunen), avi, tents, and midpoint for waves on shares",
                    (int)length, text);
 }
 
@@ -68,8 +71,8 @@ static dvi_status prepare(const dvi_field *field, const dvi_march_options *optio
                           const char *usual, const method **found, dvi__march_plan *plan)
 {
   DVI_TRY(dvi__plan_march(options, plan));
-  DVI_TRY(check_field(field));
   DVI_TRY(find(options->method != NULL ? options->method : usual, found, &plan->options));
+  DVI_TRY(check_field(field, *found));
   if ((*found)->needs_boxes && dvi_mesh_kind(field->mesh) != DVI_BOXES)
     return dvi__fail(DVI_UNSUPPORTED,
                      "march: %s is for meshes of boxes; on simplices the same method is called "

@@ -1,10 +1,9 @@
-/* Which values of a field are fixed, and which components of the mesh have none. */
+/* Which values of a field are fixed. */
 #include <math.h>
 #include <stdio.h>
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "field/mesh/connected.h"
 #include "field/mesh/share.h"
 #include "field/model/field.h"
 
@@ -107,33 +106,4 @@ dvi_status dvi__field_fix(dvi_field *field, const dvi_wave_terms *terms)
 {
   DVI_TRY(dvi__agree(field->mesh, fix(field, terms)));
   return dvi__field_number(field);
-}
-
-/* ---- components ---- */
-
-/* Number the sets that have no fixed vertex. `label` [vertices] is -2 for the others. */
-static void number_components(dvi_field *field, const int *root, int *label)
-{
-  for (int64_t v = 0; v < field->cells; v++) label[v] = -1;
-  for (int64_t v = 0; v < field->cells; v++)
-    if (field->number[v] < 0) label[root[v]] = -2;
-  for (int64_t i = 0; i < field->unknowns; i++) {
-    int *number = label + root[field->unknown[i]];
-    if (*number == -1) *number = (int)field->components++;
-    field->component[i] = *number >= 0 ? *number : -1;
-  }
-}
-
-dvi_status dvi__field_find_components(dvi_field *field)
-{
-  int *root = DVI_NEW(int, 2 * field->cells);
-  field->component = DVI_NEW(int, field->unknowns);
-  if (root == NULL || field->component == NULL) {
-    dvi__release(root);
-    return dvi__fail(DVI_NO_MEMORY, "field: no memory for components");
-  }
-  dvi__find_components(field->mesh, root);
-  number_components(field, root, root + field->cells);
-  dvi__release(root);
-  return DVI_OK;
 }

@@ -116,6 +116,24 @@ static dvi_status drop_roundings(const dvi_field *field, double *diagonal, dvi__
   return DVI_OK;
 }
 
+dvi_status dvi__field_take_rest(dvi_field *field, double factor, const double *form)
+{
+  const dvi_mesh *mesh = field->mesh;
+  dvi__block_sum sum = {.count = 0};
+  double part;
+  for (int64_t v = 0; v < field->cells; v++) {
+    const double term = factor * field->fixed[v] * form[v];
+    if (mesh->share == NULL)
+      field->rest -= term;
+    else if (dvi__owns(mesh, field->degree, v))
+      dvi__block_sum_add(&sum, term);
+  }
+  if (mesh->share == NULL) return DVI_OK;
+  DVI_TRY(dvi__sum_of_all(mesh, dvi__block_sum_end(&sum), &part));
+  field->rest -= part;
+  return DVI_OK;
+}
+
 /* The load gets minus the columns of the fixed values f. Their own energy, f.K f/2 - load.f with
  * the load before that, is -f.K f/2 - load.f with the load after it. */
 dvi_status dvi__field_make_matrices(dvi_field *field, double *load)
@@ -133,10 +151,8 @@ dvi_status dvi__field_make_matrices(dvi_field *field, double *load)
   if (status == DVI_OK) status = drop_roundings(field, pull, &field->stiffness);
   if (status == DVI_OK) {
     dvi_matrix_multiply(&view, 0, field->fixed, pull);
-    for (int64_t v = 0; v < field->cells; v++) {
-      load[v] -= pull[v];
-      field->rest -= 0.5 * field->fixed[v] * pull[v];
-    }
+    for (int64_t v = 0; v < field->cells; v++) load[v] -= pull[v];
+    status = dvi__field_take_rest(field, 0.5, pull);
   }
   dvi__release(pull);
   dvi__csr_clear(&whole);

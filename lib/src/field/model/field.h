@@ -106,6 +106,10 @@ dvi_status dvi__field_number(dvi_field *field);
 /* Make mass and stiffness, and take away from the load what the fixed values pull. */
 dvi_status dvi__field_make_matrices(dvi_field *field, double *load);
 
+/* Subtract the product of the fixed values with a form [cells], times a factor, from their energy.
+ * Called on all processes. */
+dvi_status dvi__field_take_rest(dvi_field *field, double factor, const double *form);
+
 /* Make the damping of conductors and absorbing walls. */
 dvi_status dvi__maxwell_make_damping(dvi_field *field, const dvi_maxwell_terms *terms);
 

@@ -155,7 +155,7 @@ static dvi_status make(dvi_field *field, const dvi_maxwell_terms *terms)
     status = check_factors(field, k);
   DVI_TRY(dvi__agree(field->mesh, status));
   DVI_TRY(make_matrices(field));
-  if (field->degree == 0) DVI_TRY(dvi__agree(field->mesh, dvi__field_find_components(field)));
+  if (field->degree == 0) DVI_TRY(dvi__field_find_components(field));
   DVI_TRY(dvi__agree(field->mesh, dvi__maxwell_make_damping(field, terms)));
   DVI_TRY(dvi__maxwell_make_currents(field, terms));
   return dvi__maxwell_make_probes(field, terms);

@@ -6,6 +6,8 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "field/mesh/share.h"
+#include "field/model/on_all.h"
 #include "solve/nonlinear.h"
 
 typedef struct statics {
@@ -88,8 +90,37 @@ static dvi_status run(statics *s, double *x, dvi_field_solve_report *report)
                    solved.residual, solved.iterations);
 }
 
+/* The diagonal of the Jacobian beside K. */
+static dvi_status diagonal(void *of, const double *x, double *d)
+{
+  const dvi_field *f = ((const statics *)of)->field;
+  const dvi__density density = {.second = d};
+  const int failed = dvi__field_density(f, x, 0, f->unknowns, &density);
+  if (failed != 0) return refuse(failed);
+  return check(f, d);
+}
+
+static dvi_status solve_on_all(statics *s, double *x, dvi_field_solve_report *report)
+{
+  const dvi__field_equations equations = {
+      .field = s->field, .residual = residual, .diagonal = diagonal, .of = s};
+  dvi__elliptic_report solved;
+  s->second = DVI_NEW(double, s->field->unknowns);
+  dvi_status status = dvi__agree(
+      s->field->mesh, s->second != NULL
+                          ? DVI_OK
+                          : dvi__fail(DVI_NO_MEMORY, "field: no memory for Newton's method"));
+  if (status == DVI_OK) status = dvi__field_solve_on_all(&equations, x, &solved);
+  dvi__release(s->second);
+  if (status != DVI_OK) return status;
+  report->iterations = solved.corrections;
+  report->residual = solved.correction;
+  return DVI_OK;
+}
+
 dvi_status dvi__field_newton(const dvi_field *field, double *x, dvi_field_solve_report *report)
 {
+  if (field->mesh->share != NULL) return solve_on_all(&(statics){.field = field}, x, report);
   const dvi__csr *K = &field->stiffness;
   if (K->start[K->rows] > INT_MAX)
     return dvi__fail(DVI_BAD_SIZE, "field: an int cannot count %lld entries of a factor",

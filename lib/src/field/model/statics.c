@@ -13,6 +13,7 @@
 #include "field/mesh/share.h"
 #include "field/model/field.h"
 #include "field/model/newton.h"
+#include "field/model/on_all.h"
 
 static const double default_imbalance = 1e-8;
 
@@ -55,16 +56,58 @@ static dvi_status refuse_imbalance(const statics *s, double sum, double imbalanc
       sum, imbalance, s->options->imbalance != 0 ? s->options->imbalance : default_imbalance);
 }
 
-static void take_sums_away(statics *s)
+/* Terms of the sums of components. */
+static double right_side(const statics *s, int64_t i)
+{
+  return s->b[i];
+}
+static double size_of_right_side(const statics *s, int64_t i)
+{
+  return fabs(s->b[i]);
+}
+static double mass_of(const statics *s, int64_t i)
+{
+  return s->mass[i];
+}
+static double moment(const statics *s, int64_t i)
+{
+  return s->mass[i] * s->x[i];
+}
+
+/* Sum the terms of own unknowns of a component, exactly, over all processes. */
+static dvi_status sum_share(const statics *s, double (*term)(const statics *s, int64_t i), int c,
+                            double *sum)
 {
   const dvi_field *f = s->field;
-  for (int64_t c = 0; c < f->components; c++) s->sum[c] = 0;
+  dvi__accumulator exact = {.terms = 0};
   for (int64_t i = 0; i < f->unknowns; i++)
-    if (f->component[i] >= 0) s->sum[f->component[i]] += s->b[i];
+    if (f->component[i] == c && dvi__owns(f->mesh, 0, f->unknown[i]))
+      dvi__accumulate(&exact, term(s, i));
+  return dvi__sum_of_all(f->mesh, &exact, sum);
+}
+
+/* Set sum [components] to the sums of terms. */
+static dvi_status sum_up(const statics *s, double (*term)(const statics *s, int64_t i), double *sum)
+{
+  const dvi_field *f = s->field;
+  for (int64_t c = 0; c < f->components; c++) {
+    sum[c] = 0;
+    if (f->mesh->share != NULL) DVI_TRY(sum_share(s, term, (int)c, sum + c));
+  }
+  for (int64_t i = 0; i < f->unknowns && f->mesh->share == NULL; i++)
+    if (f->component[i] >= 0) sum[f->component[i]] += term(s, i);
+  return DVI_OK;
+}
+
+static dvi_status take_sums_away(statics *s)
+{
+  const dvi_field *f = s->field;
+  DVI_TRY(sum_up(s, right_side, s->sum));
   for (int64_t i = 0; i < f->unknowns; i++) {
     const int c = f->component[i];
     if (c >= 0) s->b[i] -= s->sum[c] * s->mass[i] / s->weight[c];
   }
+  return DVI_OK;
 }
 
 /* Take the sums of b away, in proportion to the mass, twice because of roundings. */
@@ -72,32 +115,27 @@ static dvi_status balance(statics *s)
 {
   const dvi_field *f = s->field;
   const double most = s->options->imbalance != 0 ? s->options->imbalance : default_imbalance;
-  for (int64_t i = 0; i < f->unknowns; i++) {
-    const int c = f->component[i];
-    if (c < 0) continue;
-    s->sum[c] += s->b[i];
-    s->size[c] += fabs(s->b[i]);
-    s->weight[c] += s->mass[i];
-  }
+  DVI_TRY(sum_up(s, right_side, s->sum));
+  DVI_TRY(sum_up(s, size_of_right_side, s->size));
+  DVI_TRY(sum_up(s, mass_of, s->weight));
   for (int64_t c = 0; c < f->components; c++) {
     const double imbalance = s->size[c] > 0 ? fabs(s->sum[c]) / s->size[c] : 0;
     s->report.imbalance = fmax(s->report.imbalance, imbalance);
     if (imbalance > most) return refuse_imbalance(s, s->sum[c], imbalance);
   }
-  for (int pass = 0; pass < 2; pass++) take_sums_away(s);
+  for (int pass = 0; pass < 2; pass++) DVI_TRY(take_sums_away(s));
   return DVI_OK;
 }
 
-static void set_means(statics *s)
+static dvi_status set_means(statics *s)
 {
   const dvi_field *f = s->field;
-  for (int64_t c = 0; c < f->components; c++) s->sum[c] = 0;
-  for (int64_t i = 0; i < f->unknowns; i++)
-    if (f->component[i] >= 0) s->sum[f->component[i]] += s->mass[i] * s->x[i];
+  DVI_TRY(sum_up(s, moment, s->sum));
   for (int64_t i = 0; i < f->unknowns; i++) {
     const int c = f->component[i];
     if (c >= 0) s->x[i] += s->options->mean - s->sum[c] / s->weight[c];
   }
+  return DVI_OK;
 }
 
 /* ---- linear problems ---- */
@@ -189,23 +227,55 @@ static dvi_status solve_by_iteration(statics *s)
   return DVI_OK;
 }
 
+static dvi_status residual(void *of, const double *x, double *r)
+{
+  const statics *s = of;
+  const dvi_matrix K = dvi__csr_view(&s->field->stiffness, 1);
+  dvi_matrix_multiply(&K, 0, x, r);
+  for (int64_t i = 0; i < s->field->unknowns; i++) r[i] -= s->b[i];
+  return DVI_OK;
+}
+
+static dvi_status solve_on_all(statics *s)
+{
+  const dvi__field_equations equations = {.field = s->field, .residual = residual, .of = s};
+  dvi__elliptic_report report;
+  memset(s->x, 0, (size_t)s->field->unknowns * sizeof *s->x);
+  DVI_TRY(dvi__field_solve_on_all(&equations, s->x, &report));
+  s->report.iterations = (int)report.iterations;
+  return DVI_OK;
+}
+
 static dvi_status solve_linear(statics *s)
 {
   const dvi_field *f = s->field;
   DVI_TRY(balance(s));
-  DVI_TRY(dvi__definite_iterates(f->unknowns, f->mesh->n) ? solve_by_iteration(s)
-                                                          : solve_with_factor(s));
-  set_means(s);
-  return DVI_OK;
+  if (f->mesh->share != NULL)
+    DVI_TRY(solve_on_all(s));
+  else
+    DVI_TRY(dvi__definite_iterates(f->unknowns, f->mesh->n) ? solve_by_iteration(s)
+                                                            : solve_with_factor(s));
+  return set_means(s);
 }
 
-/* Numbers are scaled, so that their squares do not overflow. */
-static double length(int64_t n, const double *x)
+/* Give the length of a vector of unknowns. Numbers are scaled, so that their squares do not
+ * overflow. */
+static dvi_status measure_length(const dvi_field *f, const double *x, double *length)
 {
   double sum = 0, most = 0;
-  for (int64_t i = 0; i < n; i++) most = fmax(most, fabs(x[i]));
-  for (int64_t i = 0; i < n && most > 0; i++) sum += x[i] / most * (x[i] / most);
-  return most * sqrt(sum);
+  dvi__accumulator exact = {.terms = 0};
+  for (int64_t i = 0; i < f->unknowns; i++)
+    if (dvi__owns(f->mesh, 0, f->unknown[i])) most = fmax(most, fabs(x[i]));
+  DVI_TRY(dvi__largest_of_all(f->mesh, 1, &most));
+  for (int64_t i = 0; i < f->unknowns && most > 0; i++) {
+    const double square = x[i] / most * (x[i] / most);
+    sum += square;
+    if (f->mesh->share != NULL && dvi__owns(f->mesh, 0, f->unknown[i]))
+      dvi__accumulate(&exact, square);
+  }
+  if (f->mesh->share != NULL) DVI_TRY(dvi__sum_of_all(f->mesh, &exact, &sum));
+  *length = most * sqrt(sum);
+  return DVI_OK;
 }
 
 static dvi_status check_finite(const statics *s)
@@ -219,14 +289,14 @@ static dvi_status check_finite(const statics *s)
 }
 
 /* Set the residual beside b. With a potential it is the one that Newton's method left. */
-static void measure(statics *s)
+static dvi_status measure(statics *s)
 {
-  const int64_t n = s->field->unknowns;
-  const dvi_matrix K = dvi__csr_view(&s->field->stiffness, 1);
-  const double size = length(n, s->b);
-  dvi_matrix_multiply(&K, 0, s->x, s->mass);
-  for (int64_t i = 0; i < n; i++) s->mass[i] -= s->b[i];
-  s->report.residual = size > 0 ? length(n, s->mass) / size : length(n, s->mass);
+  double size, left;
+  (void)residual(s, s->x, s->mass);
+  DVI_TRY(measure_length(s->field, s->b, &size));
+  DVI_TRY(measure_length(s->field, s->mass, &left));
+  s->report.residual = size > 0 ? left / size : left;
+  return DVI_OK;
 }
 
 /* ---- both ---- */
@@ -234,16 +304,16 @@ static void measure(statics *s)
 static dvi_status solve(statics *s, double *u)
 {
   const dvi_field *f = s->field;
-  DVI_TRY(allocate(s));
-  s->report.unknowns = f->unknowns;
+  DVI_TRY(dvi__agree(f->mesh, allocate(s)));
+  s->report.unknowns = f->whole_unknowns;
   if (f->potential.density != NULL) {
     for (int64_t i = 0; i < f->unknowns; i++) s->x[i] = u[f->unknown[i]];
     DVI_TRY(dvi__field_newton(f, s->x, &s->report));
   } else {
     DVI_TRY(solve_linear(s));
-    measure(s);
+    DVI_TRY(measure(s));
   }
-  DVI_TRY(check_finite(s));
+  DVI_TRY(dvi__agree(f->mesh, check_finite(s)));
   return dvi_field_lift(f, s->x, u);
 }
 
@@ -254,7 +324,6 @@ dvi_status dvi_field_solve(const dvi_field *field, const dvi_field_solve_options
   statics s = {.field = field, .options = options != NULL ? options : &defaults};
   if (field == NULL || u == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "field: a field and its values are needed");
-  DVI_TRY(dvi__refuse_share(field->mesh, "field: a static problem"));
   if (!field->is_wave)
     return dvi__fail(DVI_UNSUPPORTED,
                      "field: static states are those of waves, 'field: wave', and this field is "

@@ -81,11 +81,10 @@ static dvi_status add_sources(dvi_field *field, const dvi_wave_terms *terms, dou
   return status;
 }
 
-/* Take the load of the unknowns, and the energy of the fixed values. */
+/* Take the load of the unknowns. */
 static dvi_status take_load(dvi_field *field, const double *load)
 {
   const int space = field->mesh->space;
-  for (int64_t v = 0; v < field->cells; v++) field->rest -= field->fixed[v] * load[v];
   for (int64_t i = 0; i < field->unknowns; i++) {
     const int64_t v = field->unknown[i];
     field->load[i] = load[v];
@@ -112,6 +111,7 @@ static dvi_status make_equations(dvi_field *field, const dvi_wave_terms *terms)
   if (status == DVI_OK) status = dvi__field_make_matrices(field, load);
   if (status == DVI_OK) status = dvi__agree(field->mesh, add_sources(field, terms, load));
   if (status == DVI_OK) status = dvi__field_add_fluxes(field, terms, load);
+  if (status == DVI_OK) status = dvi__field_take_rest(field, 1, load);
   if (status == DVI_OK) status = dvi__agree(field->mesh, take_load(field, load));
   dvi__release(load);
   return status;
@@ -128,7 +128,7 @@ static dvi_status make(dvi_field *field, const dvi_wave_terms *terms)
   if (terms->potential != NULL) field->potential = *terms->potential;
   DVI_TRY(dvi__field_fix(field, terms));
   DVI_TRY(make_equations(field, terms));
-  return dvi__agree(field->mesh, dvi__field_find_components(field));
+  return dvi__field_find_components(field);
 }
 
 dvi_status dvi_wave_create(const dvi_wave_terms *terms, dvi_field **field)

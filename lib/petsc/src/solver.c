@@ -1,0 +1,337 @@
+#include "solver.h"
+
+#include <float.h>
+#include <math.h>
+#include <petscsnes.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "multigrid.h"
+#include "owners.h"
+#include "vector.h"
+
+enum { CORRECTIONS = 25, ITERATIONS = 500 };
+
+/* What conjugate gradients leave of a correction, in the norm of its energy, and of the first one.
+ * Corrections end where the next one would be a rounding, or where they do not shrink any more, but
+ * are this small a part of the unknowns. */
+static const double part_left = 1e-9, roundoff = 1e-17, settled = 1e-10;
+
+typedef struct solver {
+  dvi__elliptic equations;
+  const dvi__world *world;
+  PetscInt *place; /* [unknowns] columns of `A` */
+  dvi__operator A;
+  dvi__multigrid *multigrid;
+  double *x, *r;         /* [unknowns] */
+  PetscScalar *diagonal; /* [own] of the Jacobian beside A */
+  SNES snes;
+  Mat jacobian;
+  Vec solution, residual;
+  PetscInt *members;   /* [components] unknowns of all processes */
+  double first, start; /* energy norms of the first residual, and of the last correction's */
+  double size;         /* norm of the unknowns */
+  double last, before; /* norms of corrections */
+  int64_t iterations;
+  dvi_status status; /* of the functions */
+} solver;
+
+/* ---- unknowns of the share ---- */
+
+/* Set s->x to the unknowns, those of others, too. */
+static PetscErrorCode spread(solver *s, Vec x)
+{
+  const PetscScalar *own;
+  PetscCall(VecGetArrayRead(x, &own));
+  PetscCall(PetscArraycpy(s->A.x, own, (size_t)s->A.own));
+  PetscCall(VecRestoreArrayRead(x, &own));
+  PetscCall(dvi__operator_refresh(&s->A, MPIU_SCALAR, s->A.x));
+  for (int64_t i = 0; i < s->equations.unknowns; i++) s->x[i] = s->A.x[s->place[i]];
+  return 0;
+}
+
+/* Set own numbers to those of an array [unknowns]. */
+static PetscErrorCode take_own(const solver *s, const double *values, Vec x)
+{
+  PetscScalar *own;
+  PetscCall(VecGetArray(x, &own));
+  for (int64_t i = 0; i < s->equations.unknowns; i++)
+    if (s->place[i] < s->A.own) own[s->place[i]] = values[i];
+  return VecRestoreArray(x, &own);
+}
+
+/* ---- functions of SNES ---- */
+
+/* After a failure of one process the iteration ends on all of them. */
+static PetscErrorCode evaluate(SNES snes, Vec x, Vec r, void *user)
+{
+  solver *s = user;
+  PetscCall(spread(s, x));
+  s->status = dvi__world_agree(s->world, s->equations.residual(s->equations.of, s->x, s->r));
+  if (s->status == DVI_OK) return take_own(s, s->r, r);
+  PetscCall(VecSet(r, 0));
+  return SNESSetFunctionDomainError(snes);
+}
+
+static PetscErrorCode linearize(SNES snes, Vec x, Mat jacobian, Mat of_multigrid, void *user)
+{
+  solver *s = user;
+  const dvi__elliptic *e = &s->equations;
+  (void)jacobian, (void)of_multigrid;
+  if (e->diagonal == NULL) return 0;
+  PetscCall(spread(s, x));
+  s->status = dvi__world_agree(s->world, e->diagonal(e->of, s->x, s->r));
+  if (s->status != DVI_OK) return SNESSetJacobianDomainError(snes);
+  for (int64_t i = 0; i < e->unknowns; i++)
+    if (s->place[i] < s->A.own) s->diagonal[s->place[i]] = s->r[i];
+  return 0;
+}
+
+static PetscErrorCode multiply(Mat jacobian, Vec x, Vec y)
+{
+  solver *s;
+  const PetscScalar *in;
+  PetscScalar *out;
+  PetscCall(MatShellGetContext(jacobian, &s));
+  PetscCall(VecGetArrayRead(x, &in));
+  PetscCall(VecGetArray(y, &out));
+  PetscCall(dvi__operator_multiply(&s->A, in, out));
+  for (PetscInt i = 0; i < s->A.own && s->equations.diagonal != NULL; i++)
+    out[i] += s->diagonal[i] * in[i];
+  PetscCall(VecRestoreArray(y, &out));
+  return VecRestoreArrayRead(x, &in);
+}
+
+static PetscErrorCode create_vectors(Mat jacobian, Vec *right, Vec *left)
+{
+  solver *s;
+  PetscCall(MatShellGetContext(jacobian, &s));
+  if (right != NULL) PetscCall(dvi__vector_create(s->A.comm, s->A.own, right));
+  return left != NULL ? dvi__vector_create(s->A.comm, s->A.own, left) : 0;
+}
+
+/* Subtract the mean of each component that the kernel has. */
+static PetscErrorCode subtract_means(MatNullSpace kernel, Vec x, void *user)
+{
+  const solver *s = user;
+  const dvi__elliptic *e = &s->equations;
+  (void)kernel;
+  for (int64_t c = 0; c < e->components; c++) {
+    dvi__accumulator sum = {.terms = 0};
+    PetscScalar *own, mean;
+    PetscCall(VecGetArray(x, &own));
+    for (int64_t i = 0; i < e->unknowns; i++)
+      if (e->component[i] == c && s->place[i] < s->A.own) dvi__accumulate(&sum, own[s->place[i]]);
+    PetscCall(dvi__sum_of_world(s->A.comm, &sum, &mean));
+    mean /= (double)s->members[c];
+    for (int64_t i = 0; i < e->unknowns; i++)
+      if (e->component[i] == c && s->place[i] < s->A.own) own[s->place[i]] -= mean;
+    PetscCall(VecRestoreArray(x, &own));
+  }
+  return 0;
+}
+
+/* ---- ends ---- */
+
+static PetscErrorCode end_gradients(KSP ksp, PetscInt iteration, PetscReal norm,
+                                    KSPConvergedReason *reason, void *user)
+{
+  solver *s = user;
+  *reason = KSP_CONVERGED_ITERATING;
+  if (iteration == 0) s->start = norm;
+  if (s->first == 0) s->first = norm;
+  if (!isfinite(norm))
+    *reason = KSP_DIVERGED_NANORINF;
+  else if (norm <= fmax(part_left * s->start, roundoff * s->first))
+    *reason = KSP_CONVERGED_RTOL;
+  else if (iteration >= ITERATIONS)
+    *reason = KSP_DIVERGED_ITS;
+  (void)ksp;
+  return 0;
+}
+
+/* Newton's corrections shrink by the square of what they shrank by before, until conjugate gradients
+ * leave more. */
+static PetscErrorCode end_newton(SNES snes, PetscInt iteration, PetscReal size,
+                                 PetscReal correction, PetscReal residual,
+                                 SNESConvergedReason *reason, void *user)
+{
+  solver *s = user;
+  (void)snes;
+  *reason = SNES_CONVERGED_ITERATING;
+  if (!isfinite(residual) || !isfinite(size)) {
+    *reason = SNES_DIVERGED_FNORM_NAN;
+    return 0;
+  }
+  if (residual == 0) *reason = SNES_CONVERGED_FNORM_ABS;
+  if (iteration == 0) return 0;
+  s->before = s->last;
+  s->last = correction;
+  s->size = size;
+  const double shrunk = iteration > 1 ? fmax(s->last / s->before, part_left) : 1;
+  if (shrunk * correction <= DBL_EPSILON * size || (shrunk > 0.5 && correction <= settled * size))
+    *reason = SNES_CONVERGED_SNORM_RELATIVE;
+  return 0;
+}
+
+/* ---- create ---- */
+
+static PetscErrorCode make_jacobian(solver *s)
+{
+  const PetscInt own = s->A.own;
+  PetscCall(MatCreateShell(s->A.comm, own, own, PETSC_DETERMINE, PETSC_DETERMINE, s, &s->jacobian));
+  PetscCall(MatShellSetOperation(s->jacobian, MATOP_MULT, (void (*)(void))multiply));
+  PetscCall(MatShellSetOperation(s->jacobian, MATOP_CREATE_VECS, (void (*)(void))create_vectors));
+  return MatSetOption(s->jacobian, MAT_SYMMETRIC, PETSC_TRUE);
+}
+
+/* Let corrections have no part in the kernel. */
+static PetscErrorCode make_kernel(solver *s)
+{
+  const dvi__elliptic *e = &s->equations;
+  MatNullSpace kernel;
+  if (e->components == 0) return 0;
+  PetscCall(PetscCalloc1((size_t)e->components, &s->members));
+  for (int64_t i = 0; i < e->unknowns; i++)
+    if (e->component[i] >= 0 && s->place[i] < s->A.own) s->members[e->component[i]]++;
+  PetscCallMPI(
+      MPI_Allreduce(MPI_IN_PLACE, s->members, (int)e->components, MPIU_INT, MPI_SUM, s->A.comm));
+  PetscCall(MatNullSpaceCreate(s->A.comm, PETSC_FALSE, 0, NULL, &kernel));
+  PetscCall(MatNullSpaceSetFunction(kernel, subtract_means, s));
+  PetscCall(MatSetNullSpace(s->jacobian, kernel));
+  return MatNullSpaceDestroy(&kernel);
+}
+
+static PetscErrorCode make_gradients(solver *s)
+{
+  KSP ksp;
+  PC pc;
+  PetscCall(SNESGetKSP(s->snes, &ksp));
+  PetscCall(KSPSetType(ksp, KSPCG));
+  PetscCall(KSPSetNormType(ksp, KSP_NORM_NATURAL));
+  PetscCall(KSPSetConvergenceTest(ksp, end_gradients, s, NULL));
+  PetscCall(KSPSetTolerances(ksp, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT, ITERATIONS));
+  PetscCall(KSPSetReusePreconditioner(ksp, PETSC_TRUE));
+  PetscCall(KSPGetPC(ksp, &pc));
+  return dvi__multigrid_use(s->multigrid, pc);
+}
+
+static PetscErrorCode make_newton(solver *s)
+{
+  SNESLineSearch search;
+  PetscCall(SNESCreate(s->A.comm, &s->snes));
+  PetscCall(SNESSetType(s->snes, SNESNEWTONLS));
+  PetscCall(SNESGetLineSearch(s->snes, &search));
+  PetscCall(SNESLineSearchSetType(search, SNESLINESEARCHBASIC));
+  PetscCall(SNESSetFunction(s->snes, s->residual, evaluate, s));
+  PetscCall(SNESSetJacobian(s->snes, s->jacobian, s->jacobian, linearize, s));
+  PetscCall(SNESSetConvergenceTest(s->snes, end_newton, s, NULL));
+  PetscCall(SNESSetTolerances(s->snes, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT, CORRECTIONS,
+                              10 * CORRECTIONS));
+  return make_gradients(s);
+}
+
+static PetscErrorCode make(solver *s, const dvi__elliptic *e)
+{
+  const dvi__unknowns unknowns = {
+      .share = e->share, .degree = e->degree, .count = e->unknowns, .cell = e->cell};
+  PetscInt own;
+  const size_t count = (size_t)e->unknowns;
+  PetscCall(PetscMalloc3(count, &s->place, count, &s->x, count, &s->r));
+  PetscCall(dvi__place_unknowns(s->world->comm, &unknowns, s->place, &own));
+  PetscCall(dvi__operator_of_share(s->world->comm, &unknowns, &e->A, &s->A));
+  PetscCall(PetscCalloc1((size_t)own, &s->diagonal));
+  PetscCall(dvi__multigrid_create(&s->A, &s->multigrid));
+  PetscCall(dvi__vector_create(s->A.comm, own, &s->solution));
+  PetscCall(VecDuplicate(s->solution, &s->residual));
+  PetscCall(make_jacobian(s));
+  PetscCall(make_kernel(s));
+  return make_newton(s);
+}
+
+static void destroy(void *of)
+{
+  solver *s = of;
+  if (s == NULL) return;
+  (void)SNESDestroy(&s->snes);
+  (void)dvi__multigrid_destroy(&s->multigrid);
+  (void)MatDestroy(&s->jacobian);
+  (void)VecDestroy(&s->solution);
+  (void)VecDestroy(&s->residual);
+  (void)dvi__operator_clear(&s->A);
+  (void)PetscFree(s->members);
+  (void)PetscFree(s->diagonal);
+  (void)PetscFree3(s->place, s->x, s->r);
+  dvi__release(s);
+}
+
+static dvi_status create(const dvi__elliptic *equations, void *user, void **made)
+{
+  solver *s = DVI_NEW(solver, 1);
+  *made = s;
+  dvi_status status = dvi__world_agree(
+      user, s != NULL ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "petsc: no memory for a solver"));
+  if (status == DVI_OK) {
+    s->equations = *equations;
+    s->world = user;
+    (void)PetscPushErrorHandler(PetscReturnErrorHandler, NULL);
+    status = dvi__world_agree(user, dvi__check_petsc(make(s, equations)));
+    (void)PetscPopErrorHandler();
+  }
+  if (status == DVI_OK) return DVI_OK;
+  destroy(s);
+  *made = NULL;
+  return status;
+}
+
+/* ---- solve ---- */
+
+static const char *explain(SNESConvergedReason reason)
+{
+  switch (reason) {
+  case SNES_DIVERGED_LINEAR_SOLVE:
+    return "conjugate gradients did not end, or their matrix is not positive definite";
+  case SNES_DIVERGED_FNORM_NAN: return "a number is not finite";
+  default: return "corrections did not become small";
+  }
+}
+
+static PetscErrorCode run(solver *s, double *x, dvi__elliptic_report *report, int *is_solved)
+{
+  SNESConvergedReason reason;
+  PetscInt corrections, iterations;
+  PetscReal residual;
+  s->first = s->last = s->size = 0;
+  s->status = DVI_OK;
+  PetscCall(take_own(s, x, s->solution));
+  PetscCall(SNESSolve(s->snes, NULL, s->solution));
+  PetscCall(SNESGetConvergedReason(s->snes, &reason));
+  PetscCall(SNESGetIterationNumber(s->snes, &corrections));
+  PetscCall(SNESGetLinearSolveIterations(s->snes, &iterations));
+  PetscCall(VecNorm(s->residual, NORM_2, &residual));
+  *is_solved = reason > 0;
+  *report = (dvi__elliptic_report){.corrections = (int)corrections,
+                                   .iterations = iterations,
+                                   .residual = residual,
+                                   .correction = s->size > 0 ? s->last / s->size : 0,
+                                   .why = reason > 0 ? NULL : explain(reason)};
+  if (reason <= 0) return 0;
+  PetscCall(spread(s, s->solution));
+  return PetscArraycpy(x, s->x, (size_t)s->equations.unknowns);
+}
+
+static dvi_status solve(void *of, double *x, dvi__elliptic_report *report)
+{
+  solver *s = of;
+  int is_solved = 0;
+  (void)PetscPushErrorHandler(PetscReturnErrorHandler, NULL);
+  const PetscErrorCode code = run(s, x, report, &is_solved);
+  (void)PetscPopErrorHandler();
+  const dvi_status status = dvi__world_agree(s->world, dvi__check_petsc(code));
+  if (status != DVI_OK) return status;
+  if (s->status != DVI_OK) return s->status;
+  return is_solved ? DVI_OK : DVI_NOT_CONVERGED;
+}
+
+const dvi_ranks_solver dvi__solver_of_petsc = {
+    .create = create, .solve = solve, .destroy = destroy};
