@@ -1,21 +1,11 @@
 /* A mesh divided among processes: the graph of its n-cells goes to a partitioner of PETSc, and the
  * values of ghosts come through a star forest for each degree (PetscSF). */
-#include <dvi/petsc.h>
-#include <petscsf.h>
 #include <string.h>
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "division.h"
 #include "owners.h"
-
-enum { DEGREES = DVI_MESH_DIMENSION_MAX + 1, NAME_SIZE = 32 };
-
-struct dvi_division {
-  dvi__world world;        /* the first member, so that a division is one */
-  PetscSF forest[DEGREES]; /* roots are the owners' cells, leaves the ghosts */
-  char partitioner[NAME_SIZE];
-  dvi_division_facts facts;
-};
 
 /* ---- how processes speak with each other ---- */
 
@@ -26,6 +16,11 @@ static int refresh(int degree, double *values, void *user)
   int failed = PetscSFBcastBegin(forest, MPI_DOUBLE, values, values, MPI_REPLACE);
   if (failed == 0) failed = PetscSFBcastEnd(forest, MPI_DOUBLE, values, values, MPI_REPLACE);
   return failed;
+}
+
+dvi_status dvi__division_refresh(const dvi_division *division, int k, double *values)
+{
+  return dvi__check_petsc((PetscErrorCode)refresh(k, values, (void *)division));
 }
 
 /* ---- star forests ---- */
@@ -57,7 +52,7 @@ static PetscErrorCode drop_selection(selection *s)
 
 /* Own cells and ghosts of all degrees. */
 typedef struct selections {
-  selection own[DEGREES], ghost[DEGREES];
+  selection own[DVI__DEGREES], ghost[DVI__DEGREES];
 } selections;
 
 static PetscErrorCode select_all(const dvi_mesh *share, int rank, selections *s)
@@ -104,7 +99,7 @@ static dvi_status plant_forests(dvi_division *division, const dvi_mesh *share, c
       &division->world, dvi__check_petsc(select_all(share, division->world.rank, &s)));
   if (status == DVI_OK)
     status = dvi__world_agree(&division->world, dvi__check_petsc(plant_all(division, &s, mesh)));
-  for (int k = 0; k < DEGREES; k++) {
+  for (int k = 0; k < DVI__DEGREES; k++) {
     (void)drop_selection(s.own + k);
     (void)drop_selection(s.ghost + k);
   }
@@ -132,7 +127,7 @@ static dvi_status choose(const dvi_division_options *options, dvi_division *divi
   const char *name = "blocks";
 #endif
   if (options != NULL && options->partitioner != NULL) name = options->partitioner;
-  if (strlen(name) >= NAME_SIZE)
+  if (strlen(name) >= DVI__NAME_SIZE)
     return dvi__fail(DVI_BAD_OPTION, "petsc: there is no partitioner \"%s\"", name);
   memcpy(division->partitioner, name, strlen(name) + 1);
   division->facts.partitioner = division->partitioner;
@@ -142,16 +137,16 @@ static dvi_status choose(const dvi_division_options *options, dvi_division *divi
 /* The processes have the same mesh, as far as the numbers of cells tell, with enough cells. */
 static dvi_status check_mesh(const dvi_mesh *mesh, const dvi__world *world)
 {
-  int64_t count[2 * DEGREES] = {0};
+  int64_t count[2 * DVI__DEGREES] = {0};
   const int n = dvi_mesh_dimension(mesh);
-  for (int k = 0; k < DEGREES; k++) {
+  for (int k = 0; k < DVI__DEGREES; k++) {
     count[2 * k] = dvi_mesh_count(mesh, k);
     count[2 * k + 1] = -count[2 * k];
   }
-  if (MPI_Allreduce(MPI_IN_PLACE, count, 2 * DEGREES, MPI_INT64_T, MPI_MAX, world->comm) !=
+  if (MPI_Allreduce(MPI_IN_PLACE, count, 2 * DVI__DEGREES, MPI_INT64_T, MPI_MAX, world->comm) !=
       MPI_SUCCESS)
     return dvi__world_fail(world);
-  for (int k = 0; k < DEGREES; k++)
+  for (int k = 0; k < DVI__DEGREES; k++)
     if (count[2 * k] != -count[2 * k + 1])
       return dvi__fail(DVI_BAD_ARGUMENT,
                        "petsc: the mesh is not the same on all processes: they "
@@ -203,6 +198,7 @@ dvi_status dvi_mesh_divide(const dvi_mesh *mesh, const dvi_division_options *opt
     status = dvi__world_join(options != NULL ? options->comm : MPI_COMM_NULL, &made->world);
   if (status == DVI_OK) status = make(mesh, made, share);
   (void)PetscPopErrorHandler();
+  if (status == DVI_OK) made->share = *share;
   if (status != DVI_OK) {
     dvi_mesh_destroy(share);
     dvi_division_destroy(&made);
@@ -221,7 +217,7 @@ void dvi_division_destroy(dvi_division **division)
   PetscBool ended = PETSC_FALSE;
   if (division == NULL || *division == NULL) return;
   (void)PetscFinalized(&ended);
-  for (int k = 0; k < DEGREES && !ended; k++) (void)PetscSFDestroy(&(*division)->forest[k]);
+  for (int k = 0; k < DVI__DEGREES && !ended; k++) (void)PetscSFDestroy(&(*division)->forest[k]);
   if (!ended) dvi__world_leave(&(*division)->world);
   dvi__release(*division);
   *division = NULL;
