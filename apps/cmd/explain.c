@@ -13,6 +13,8 @@
 #include "load/open_march.h"
 #include "cli/options.h"
 #include "load/scene.h"
+#include "load/share.h"
+#include "module/ranks.h"
 
 enum { NAMES_SHOWN = 12 };
 
@@ -42,11 +44,16 @@ static void explain_run(const problem *scene, const char *method)
   (void)printf("--t-end %g\n", scene->t_end);
 }
 
-static void explain_problem(const problem *scene, const char *method, const words *settings)
+static void explain_parameters(const problem *scene, const words *settings)
 {
   (void)printf("problem %s: %s\n", scene->name, scene->summary);
   for (const problem_parameter *k = scene->parameter; k->name != NULL; k++)
     explain_parameter(k, settings);
+}
+
+static void explain_problem(const problem *scene, const char *method, const words *settings)
+{
+  explain_parameters(scene, settings);
   if (scene->velocity != NULL)
     (void)printf("  coordinates  %d, velocities %d:", scene->nq, scene->nv);
   else
@@ -117,7 +124,7 @@ static void explain_fast_motion(const problem *scene, const char *method, double
 }
 
 /* Say which steps a march of a field takes. */
-static int explain_march(const problem *scene, const char *method, double h)
+static int tell_steps(const problem *scene, const char *method, double h)
 {
   const dvi_march_options options = {
       .size = sizeof options, .method = method, .step = isnan(h) ? 0 : h};
@@ -134,10 +141,17 @@ static int explain_march(const problem *scene, const char *method, double h)
   else
     (void)printf("steps of %g, beyond the bound %.3g of the start's density: noise may grow\n",
                  facts.step, facts.bound);
+  dvi_march_destroy(&march);
+  return DONE;
+}
+
+static int explain_march(const problem *scene, const char *method, double h)
+{
+  const int code = tell_steps(scene, method, h);
+  if (code != DONE) return code;
   scene_tell(scene);
   if (elastic_of(scene) != NULL && strncmp(method, "avi", 3) == 0 && isnan(h))
     elastic_tell_cost(scene, method, dvi_scene_plan_of(scene->scene)->fraction);
-  dvi_march_destroy(&march);
   return DONE;
 }
 
@@ -172,6 +186,33 @@ static int explain_density(problem *scene)
   return DONE;
 }
 
+/* The options. */
+typedef struct explain_request {
+  const char *method; /* NULL for the scene's */
+  words settings;
+  pacing how;
+  double h;        /* NaN if not given */
+  const char *csv; /* NULL if not given */
+} explain_request;
+
+/* Say how several processes share the mesh of a field. The last output is the table. */
+static int explain_shares(const explain_request *r, const char *name)
+{
+  problem *scene;
+  int code = open_any(name, &r->settings, &scene);
+  if (code != DONE) return code;
+  code = share_check("explain", scene, r->method);
+  if (code == DONE && (r->how.transform != NULL || r->how.control != NULL))
+    code = usage_error("explain: leapfrog is a march of a field, whose steps follow no monitor");
+  if (code == DONE) {
+    explain_parameters(scene, &r->settings);
+    code = tell_steps(scene, "leapfrog", r->h);
+  }
+  if (code == DONE) code = share_tell(scene, ranks_is_first() ? r->csv : NULL);
+  problem_destroy(&scene);
+  return code;
+}
+
 static const char *const details[] = {
     "Examples:\n"
     "  dvi explain kepler --method galerkin:degree=4\n"
@@ -184,16 +225,15 @@ static const char *const details[] = {
     "(and the least one, if there are several), and how fast slow forces carry energy from one "
     "mode to another of the same\n"
     "frequency. An angle over the step is the frequency that the method gives to the mode.\n",
+    "Processes that mpirun or srun started share the mesh of a wave or of Maxwell's field, for "
+    "leapfrog. Said is which cells each\n"
+    "of them owns, and what a step makes it receive: mpirun -np 4 dvi explain drum.yaml --method "
+    "leapfrog. Columns of --csv:\n"
+    "rank,partitioner,cells,ghosts,neighbours,messages,bytes; cells are those of the highest "
+    "degree, and ghosts those of other\n"
+    "processes beside them.\n",
     NULL,
 };
-
-/* The options. */
-typedef struct explain_request {
-  const char *method; /* NULL for the scene's */
-  words settings;
-  pacing how;
-  double h; /* NaN if not given */
-} explain_request;
 
 static const option command_options[] = {
     {.name = "method",
@@ -217,6 +257,11 @@ static const option command_options[] = {
      OPTION_AT(explain_request, settings),
      .value = "NAME=VALUE",
      .help = "set a parameter of the problem; may be repeated"},
+    {.name = "csv",
+     OPTION_AT(explain_request, csv),
+     .value = "-|FILE",
+     .help = "of several processes: their shares as CSV; -: behind the words",
+     .is_csv = true},
     {.name = NULL},
 };
 
@@ -230,7 +275,7 @@ static const command_line command = {
     .details = details,
 };
 
-int explain_command(int argc, char **argv)
+static int explain_alone(int argc, char **argv)
 {
   explain_request r = {.h = (double)NAN};
   const char *name;
@@ -238,6 +283,10 @@ int explain_command(int argc, char **argv)
   if (!options_parse(&command, argc, argv, &r, &name, &code)) return code;
   code = pacing_check("explain", &r.how);
   if (code != DONE) return code;
+  if (ranks_count() > 1) return explain_shares(&r, name);
+  if (r.csv != NULL)
+    return usage_error("explain: --csv is for the shares of several processes: start them by "
+                       "mpirun");
   problem *scene;
   code = open_problem(name, &r.settings, &scene);
   if (code != DONE) return code;
@@ -248,4 +297,10 @@ int explain_command(int argc, char **argv)
   if (code == DONE) code = explain_all(scene, r.method, &r.how, r.h);
   problem_destroy(&scene);
   return code;
+}
+
+int explain_command(int argc, char **argv)
+{
+  const int code = ranks_begin();
+  return ranks_end(code == DONE ? explain_alone(argc, argv) : code);
 }

@@ -13,6 +13,7 @@
 #include "load/density.h"
 #include "load/open.h"
 #include "cli/options.h"
+#include "load/share.h"
 #include "module/ranks.h"
 #include "cli/outputs.h"
 #include "watch/field_run.h"
@@ -246,7 +247,7 @@ static int run_march(run_request *request, const problem *scene)
   return code == DONE ? field_run(request, scene) : code;
 }
 
-/* Several processes share a field, which leapfrog alone advances, and write rows alone. */
+/* Several processes write rows alone. */
 static int check_shared(const run_request *request, const problem *scene)
 {
   const struct {
@@ -255,16 +256,9 @@ static int check_shared(const run_request *request, const problem *scene)
                {"map", request->map},
                {"checkpoint", request->checkpoint},
                {"resume", request->resume}};
-  const char *method = request->method != NULL ? request->method : scene->method;
   if (ranks_count() == 1) return DONE;
-  if (scene->scene == NULL || !dvi_scene_marches(scene->scene, "leapfrog"))
-    return usage_error("run: %d processes share a scene of waves or of Maxwell's field on a mesh, "
-                       "and %s is none; leave mpirun out",
-                       ranks_count(), scene->name);
-  if (method == NULL || strcmp(method, "leapfrog") != 0)
-    return usage_error("run: %d processes share leapfrog alone, not %s; give --method leapfrog, or "
-                       "leave mpirun out",
-                       ranks_count(), method != NULL ? method : "another method");
+  const int code = share_check("run", scene, request->method);
+  if (code != DONE) return code;
   for (size_t i = 0; i < sizeof whole / sizeof *whole; i++)
     if (whole[i].given != NULL)
       return usage_error("run: --%s needs the whole mesh, which %d processes share; leave it out, "

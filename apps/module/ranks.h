@@ -31,6 +31,10 @@ dvi_status ranks_divide(const dvi_mesh *mesh, dvi_mesh **share, void *user);
 /** Give the share of process `rank`, of forms of a degree. Called by all processes. */
 void ranks_tell(int rank, int degree, mesh_division *division);
 
+/** Find modes of the field on this process's share, as dvi_field_modes does. Called by all. */
+dvi_status ranks_modes(const dvi_field *field, const dvi_modes_options *options, double *eigenvalue,
+                       mode_search *search);
+
 /** Leave the others, with this process's exit code. Returns that of the whole: it is not DONE in
  *  the first process alone. Does not return if the others cannot be reached any more. */
 int ranks_end(int code);

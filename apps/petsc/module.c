@@ -37,13 +37,28 @@ static void tell(int rank, int degree, mesh_division *told)
   int n = DVI_MESH_DIMENSION_MAX;
   dvi_division_facts_of(division, &facts);
   while (n > 0 && facts.owned[n] == 0) n--;
-  int64_t number[] = {facts.owned[n], facts.ghosts[n], facts.bytes_in[degree], facts.neighbours};
-  (void)MPI_Bcast(number, 4, MPI_INT64_T, rank, MPI_COMM_WORLD);
+  int64_t number[] = {facts.owned[n], facts.ghosts[n], facts.bytes_in[degree],
+                      facts.messages_in[degree], facts.neighbours};
+  (void)MPI_Bcast(number, sizeof number / sizeof *number, MPI_INT64_T, rank, MPI_COMM_WORLD);
   *told = (mesh_division){.partitioner = facts.partitioner,
                           .owned = number[0],
                           .ghosts = number[1],
                           .bytes_in = number[2],
-                          .neighbours = (int)number[3]};
+                          .messages_in = (int)number[3],
+                          .neighbours = (int)number[4]};
+}
+
+static dvi_status find_modes(const dvi_field *field, const dvi_modes_options *options,
+                             double *eigenvalue, mode_search *search)
+{
+  dvi_modes_facts facts = {.solver = ""};
+  const dvi_status status = dvi_division_modes(division, field, options, eigenvalue, NULL, &facts);
+  *search = (mode_search){.unknowns = facts.unknowns,
+                          .zeros = facts.zeros,
+                          .solver = facts.solver,
+                          .solutions = facts.solutions,
+                          .residual = facts.residual};
+  return status;
 }
 
 /* Wait until a request is met, for good or only for a while. */
@@ -91,6 +106,7 @@ const petsc_module dvi_petsc = {
     .start = start,
     .divide = divide,
     .tell = tell,
+    .modes = find_modes,
     .largest = largest,
     .meet = meet,
     .end = end,

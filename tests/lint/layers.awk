@@ -112,7 +112,7 @@ BEGIN {
   # libdvi shares these headers with sister libraries (lib/exports.map, DVI_PRIVATE).
   also["text core/memory.h"] = also["expr/compile num/simd/lanes.h"] = 1
   # The component petsc sees these headers of the library.
-  also["petsc core/memory.h"] = also["petsc core/status.h"] = 1
+  also["petsc core/memory.h"] = also["petsc core/status.h"] = also["petsc num/accumulator.h"] = 1
   # Standard headers that a public header may need.
   split("math.h stdarg.h stddef.h stdint.h string.h", open_headers)
   for (i in open_headers) standard[open_headers[i]] = 1
@@ -131,13 +131,13 @@ function part_of_suitesparse(header) {
   return header ~ /^(suitesparse\/)?(klu|amd|colamd|btf|SuiteSparse_config)\.h$/
 }
 
-function part_of_mpi(header) { return header ~ /^(mpi|petsc[a-z]*)\.h$/ || header == "dvi/petsc.h" }
+function part_of_mpi(header) { return header ~ /^(mpi|(petsc|slepc)[a-z]*)\.h$/ || header == "dvi/petsc.h" }
 
 # lib/petsc is the only component that is linked to PETSc and MPI.
 function check_component(quoted, header) {
   if (quoted && header ~ /\// && !(("petsc " header) in also))
-    breach("lib/petsc may include public headers, and of libdvi's own core/memory.h and " \
-           "core/status.h")
+    breach("lib/petsc may include public headers, and of libdvi's own core/memory.h, " \
+           "core/status.h and num/accumulator.h")
 }
 
 function check_library(quoted, header,   target) {

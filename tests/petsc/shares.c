@@ -25,6 +25,17 @@ static void expect(int holds, const char *what, const char *partitioner)
                   dvi_last_error());
 }
 
+/* Count the other processes that own cells of a degree. There are a few processes. */
+static int count_owners(const dvi_mesh *share, int k)
+{
+  unsigned long owners = 0;
+  int count = 0;
+  for (int64_t c = 0; c < dvi_mesh_count(share, k); c++)
+    owners |= 1UL << dvi_mesh_share_owners(share, k)[c];
+  for (int r = 0; r < ranks; r++) count += r != rank && (owners >> r & 1) != 0;
+  return count;
+}
+
 /* All cells have one owner, and the ghosts are the other ones. */
 static int64_t count_wrong(const dvi_division_facts *facts, const dvi_mesh *share,
                            const dvi_mesh *mesh)
@@ -36,6 +47,7 @@ static int64_t count_wrong(const dvi_division_facts *facts, const dvi_mesh *shar
     wrong += owned != dvi_mesh_count(mesh, k);
     wrong += facts->owned[k] + facts->ghosts[k] != dvi_mesh_count(share, k);
     wrong += facts->bytes_in[k] != 8 * facts->ghosts[k];
+    wrong += facts->messages_in[k] != count_owners(share, k);
   }
   return wrong + (facts->rank != rank) + (facts->ranks != ranks);
 }

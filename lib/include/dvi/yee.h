@@ -166,8 +166,9 @@ typedef struct dvi_yee_terms {
   double span;
   int threads; /**< default 1. The bits do not depend on it */
   /** Steps that are taken together while their fields are in a cache. Axes y and z that repeat
-   *  themselves, and a divided grid, allow only 1. The bits do not depend on it. Default: as many
-   *  as pay */
+   *  themselves allow only 1, but for one without a phase that is divided. A divided grid allows as
+   *  many as each process has planes, and planes go to neighbours once for all of them. The bits do
+   *  not depend on it. Default: as many as pay */
   int together;
   const dvi_yee_ranks *ranks; /**< copied. Default: one process has the whole grid */
 } dvi_yee_terms;
@@ -194,8 +195,9 @@ extern "C" {
  *
  *  On a divided grid the values of forms are those of this process, numbered as on a grid of its
  *  own boxes and nodes, and observables are those of the whole grid. All have the bits of one
- *  process. A saved state is that of this process, for the same one of as many. After processes
- *  could not speak with each other, a march must be started again, or loaded.
+ *  process. A saved state is that of the whole grid, the same bytes for any division, and each
+ *  process takes its part of it. The first process alone writes files, and all read them. After
+ *  processes could not speak with each other, a march must be started again, or loaded.
  *
  *  @retval DVI_BAD_ARGUMENT     an argument is not as described: axes, ends, media, places, or a
  *                               step that is not stable. dvi_last_error() has the bound and its

@@ -77,16 +77,17 @@ static PetscErrorCode plant(dvi_division *division, const selections *s, int64_t
   division->facts.owned[k] = own->count;
   division->facts.ghosts[k] = ghost->count;
   division->facts.bytes_in[k] = ghost->count * (int64_t)sizeof(double);
+  PetscMPIInt owners = 0;
+  PetscCall(PetscSFGetRootRanks(division->forest[k], &owners, NULL, NULL, NULL, NULL));
+  division->facts.messages_in[k] = (int)owners;
   return PetscLayoutDestroy(&layout);
 }
 
 static PetscErrorCode plant_all(dvi_division *division, const selections *s, const dvi_mesh *mesh)
 {
   const int n = dvi_mesh_dimension(mesh);
-  PetscMPIInt neighbours = 0;
   for (int k = 0; k <= n; k++) PetscCall(plant(division, s, dvi_mesh_count(mesh, k), k));
-  PetscCall(PetscSFGetRootRanks(division->forest[n], &neighbours, NULL, NULL, NULL, NULL));
-  division->facts.neighbours = (int)neighbours;
+  division->facts.neighbours = division->facts.messages_in[n];
   division->facts.rank = division->world.rank;
   division->facts.ranks = division->world.count;
   return 0;

@@ -316,7 +316,8 @@ static dvi_status give(const modes *m, int count, double *eigenvalue, double *mo
     residual = fmax(residual, pairs->residual[first + i] / fabs(eigenvalue[i]));
   }
   if (facts != NULL)
-    *facts = (dvi_modes_facts){.zeros = m->zeros,
+    *facts = (dvi_modes_facts){.unknowns = m->problem.unknowns.total,
+                               .zeros = m->zeros,
                                .solver = m->solver,
                                .solutions = m->solutions,
                                .iterations = m->iterations,

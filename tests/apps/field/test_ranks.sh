@@ -87,6 +87,15 @@ same 4 box.yaml --every 5
 mpirun -np 2 "$dvi" run wave.yaml >all.csv || wrong "no rows on standard output"
 "$dvi" run wave.yaml | cmp - all.csv || wrong "other rows on standard output"
 
+# Processes explain who owns what: all cells have an owner, and every message is counted.
+mpirun -np 3 "$dvi" explain torus.yaml --csv shares.csv >out.txt || wrong "explain fails"
+grep -q '^shares: 324 cells among 3 processes by [a-z]*, 10[0-9] to 1[0-9]* each' out.txt ||
+  wrong "explain: $(cat out.txt)"
+awk -F, 'NR > 1 { cells += $3
+    wrong += !($4 > 0 && $5 == 2 && $6 == 2 && $7 > 0 && $7 % 8 == 0) }
+  END { exit !(NR == 4 && cells == 324 && !wrong) }' shares.csv ||
+  wrong "explain: $(cat shares.csv)"
+
 # refused CODE WORDS ARGUMENT...: processes end with the code, and one sentence.
 refused() {
   code=$1 words=$2

@@ -7,22 +7,12 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "support/field/marches.h"
 #include "support/field/ranks.h"
 #include "support/meshes.h"
 #include "support/suite.h"
 
-enum { PROCESSES = 5, BEFORE = 4, AFTER = 9 };
-
-/* What the processes do, and what came of it. */
-typedef struct trial {
-  char path[64];
-  size_t size;
-  unsigned char *saved, *later; /* [size] states of the whole mesh after BEFORE and AFTER steps */
-  const unsigned char *tried;   /* [tried_size] bytes that are no state of this field */
-  size_t tried_size;
-  dvi_status status[PROCESSES];
-  int same[PROCESSES];
-} trial;
+enum { BEFORE = 4, AFTER = 9 };
 
 static int ring(double t, double *value, void *user)
 {
@@ -98,41 +88,23 @@ static dvi_status advance(dvi_march *march, int steps)
   return dvi_march_advance(march, (steps + 0.3) * facts.step);
 }
 
-static int has_bytes(const dvi_march *march, const unsigned char *bytes, size_t size)
-{
-  unsigned char *here = malloc(size);
-  size_t needed;
-  const int same = dvi_march_save_memory(march, here, size, &needed) == DVI_OK && needed == size &&
-                   memcmp(here, bytes, size) == 0;
-  free(here);
-  return same;
-}
-
-static unsigned char *bytes_of(const dvi_march *march, size_t *size)
-{
-  ck_assert_int_eq(dvi_march_save_memory(march, NULL, 0, size), DVI_OK);
-  unsigned char *bytes = malloc(*size);
-  ck_assert_int_eq(dvi_march_save_memory(march, bytes, *size, size), DVI_OK);
-  return bytes;
-}
-
 /* Run on the whole mesh. */
-static trial try_whole(const dvi_mesh *mesh)
+static state_trial try_whole(const dvi_mesh *mesh)
 {
-  trial t = {.path = ""};
+  state_trial t = {.path = ""};
   run whole = run_on(mesh, 1);
   ck_assert_msg(whole.march != NULL, "%s", dvi_last_error());
   begin(mesh, whole.march);
   ck_assert_int_eq(advance(whole.march, BEFORE), DVI_OK);
-  t.saved = bytes_of(whole.march, &t.size);
+  t.saved = save_march(whole.march, &t.size);
   ck_assert_int_eq(advance(whole.march, AFTER), DVI_OK);
-  t.later = bytes_of(whole.march, &t.size);
+  t.later = save_march(whole.march, &t.size);
   end(&whole);
   (void)snprintf(t.path, sizeof t.path, "shares-%ld.state", (long)getpid());
   return t;
 }
 
-static void run_divided(const dvi_mesh *mesh, int count, trial *t,
+static void run_divided(const dvi_mesh *mesh, int count, state_trial *t,
                         void (*work)(const dvi_mesh *share, int rank, void *user))
 {
   const int64_t cells = dvi_mesh_count(mesh, 2);
@@ -142,37 +114,30 @@ static void run_divided(const dvi_mesh *mesh, int count, trial *t,
   free(owner);
 }
 
-static void forget(trial *t)
-{
-  (void)unlink(t->path);
-  free(t->saved);
-  free(t->later);
-}
-
 /* ---- states go from one division to another ---- */
 
 static void save_share(const dvi_mesh *share, int rank, void *user)
 {
-  trial *t = user;
+  state_trial *t = user;
   run here = run_on(share, 1);
   begin(share, here.march);
   (void)advance(here.march, BEFORE);
   t->status[rank] = dvi_march_save(here.march, t->path);
-  t->same[rank] = has_bytes(here.march, t->saved, t->size);
+  t->same[rank] = march_has_bytes(here.march, t->saved, t->size);
   end(&here);
 }
 
 static void load_share(const dvi_mesh *share, int rank, void *user)
 {
-  trial *t = user;
+  state_trial *t = user;
   run here = run_on(share, 1);
   t->status[rank] = dvi_march_load(here.march, t->path);
   (void)advance(here.march, AFTER);
-  t->same[rank] = has_bytes(here.march, t->later, t->size);
+  t->same[rank] = march_has_bytes(here.march, t->later, t->size);
   end(&here);
 }
 
-static void check_all(const trial *t, int count, dvi_status status, int same)
+static void check_all(const state_trial *t, int count, dvi_status status, int same)
 {
   for (int r = 0; r < count; r++) {
     ck_assert_int_eq(t->status[r], status);
@@ -180,28 +145,17 @@ static void check_all(const trial *t, int count, dvi_status status, int same)
   }
 }
 
-static void check_file(const trial *t)
-{
-  FILE *file = fopen(t->path, "rb");
-  unsigned char *bytes = malloc(t->size + 1);
-  ck_assert(file != NULL);
-  ck_assert_uint_eq(fread(bytes, 1, t->size + 1, file), t->size);
-  ck_assert(memcmp(bytes, t->saved, t->size) == 0);
-  (void)fclose(file);
-  free(bytes);
-}
-
 START_TEST(a_file_of_shares_is_that_of_the_whole_mesh)
 {
   dvi_mesh *mesh = staggered_mesh(6, 7);
-  trial t = try_whole(mesh);
-  for (int count = 1; count <= PROCESSES; count += 2) {
+  state_trial t = try_whole(mesh);
+  for (int count = 1; count <= STATE_TRIAL_MOST; count += 2) {
     run_divided(mesh, count, &t, save_share);
     check_all(&t, count, DVI_OK, 1);
-    check_file(&t);
+    ck_assert(file_has_bytes(t.path, t.saved, t.size));
     (void)unlink(t.path);
   }
-  forget(&t);
+  end_state_trial(&t);
   dvi_mesh_destroy(&mesh);
 }
 END_TEST
@@ -210,7 +164,7 @@ START_TEST(a_run_goes_on_with_the_same_bits_on_any_number_of_processes)
 {
   const int counts[] = {1, 2, 5};
   dvi_mesh *mesh = staggered_mesh(6, 7);
-  trial t = try_whole(mesh);
+  state_trial t = try_whole(mesh);
   run_divided(mesh, 3, &t, save_share);
   for (int i = 0; i < 3; i++) {
     run_divided(mesh, counts[i], &t, load_share);
@@ -218,7 +172,7 @@ START_TEST(a_run_goes_on_with_the_same_bits_on_any_number_of_processes)
   }
   load_share(mesh, 0, &t);
   check_all(&t, 1, DVI_OK, 1);
-  forget(&t);
+  end_state_trial(&t);
   dvi_mesh_destroy(&mesh);
 }
 END_TEST
@@ -228,17 +182,18 @@ END_TEST
 /* Try to load bytes, or on one process the right ones, and see that nothing changes. */
 static void refuse_share(const dvi_mesh *share, int rank, void *user)
 {
-  trial *t = user;
+  state_trial *t = user;
   run here = run_on(share, 1);
   begin(share, here.march);
   (void)advance(here.march, BEFORE);
   t->status[rank] = dvi_march_load_memory(here.march, rank == 1 ? t->saved : t->tried,
                                           rank == 1 ? t->size : t->tried_size);
-  t->same[rank] = has_bytes(here.march, t->saved, t->size);
+  t->same[rank] = march_has_bytes(here.march, t->saved, t->size);
   end(&here);
 }
 
-static void check_refused(const dvi_mesh *mesh, trial *t, const unsigned char *bytes, size_t size)
+static void check_refused(const dvi_mesh *mesh, state_trial *t, const unsigned char *bytes,
+                          size_t size)
 {
   t->tried = bytes;
   t->tried_size = size;
@@ -249,41 +204,41 @@ static void check_refused(const dvi_mesh *mesh, trial *t, const unsigned char *b
 START_TEST(all_processes_refuse_what_one_of_them_cannot_load)
 {
   dvi_mesh *mesh = staggered_mesh(6, 7);
-  trial t = try_whole(mesh);
+  state_trial t = try_whole(mesh);
   size_t size;
   run foreign = run_on(mesh, 2);
   begin(mesh, foreign.march);
-  unsigned char *bytes = bytes_of(foreign.march, &size);
+  unsigned char *bytes = save_march(foreign.march, &size);
   check_refused(mesh, &t, bytes, size);         /* of another field */
   check_refused(mesh, &t, t.saved, t.size - 9); /* cut short */
   check_refused(mesh, &t, t.later, t.size);     /* of another time than that of process 1 */
   free(bytes);
   end(&foreign);
-  forget(&t);
+  end_state_trial(&t);
   dvi_mesh_destroy(&mesh);
 }
 END_TEST
 
 static void load_missing(const dvi_mesh *share, int rank, void *user)
 {
-  trial *t = user;
+  state_trial *t = user;
   run here = run_on(share, 1);
   begin(share, here.march);
   (void)advance(here.march, BEFORE);
   t->status[rank] = dvi_march_load(here.march, "no/such.state");
   if (t->status[rank] == DVI_IO_ERROR)
     t->status[rank] = dvi_march_save(here.march, "no/such.state");
-  t->same[rank] = has_bytes(here.march, t->saved, t->size);
+  t->same[rank] = march_has_bytes(here.march, t->saved, t->size);
   end(&here);
 }
 
 START_TEST(all_processes_know_that_a_file_is_missing_or_cannot_be_written)
 {
   dvi_mesh *mesh = staggered_mesh(6, 7);
-  trial t = try_whole(mesh);
+  state_trial t = try_whole(mesh);
   run_divided(mesh, 3, &t, load_missing);
   check_all(&t, 3, DVI_IO_ERROR, 1);
-  forget(&t);
+  end_state_trial(&t);
   dvi_mesh_destroy(&mesh);
 }
 END_TEST

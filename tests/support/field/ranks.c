@@ -156,3 +156,35 @@ void run_box_ranks(int count, void (*work)(const dvi_yee_ranks *ranks, void *use
   shared = (board){.count = count, .work_on_boxes = work, .user = user};
   run_threads(&shared, run_boxes, ranks);
 }
+
+/* ---- boxes, watched ---- */
+
+static int pass_watched(int way, int around, int64_t count, const double *sent, double *received,
+                        void *user)
+{
+  watched_ranks *w = user;
+  w->passes++;
+  return w->is_cut ? 9 : w->ranks->pass(way, around, count, sent, received, w->ranks->user);
+}
+
+static int sum_watched(int count, int64_t *number, void *user)
+{
+  const watched_ranks *w = user;
+  return w->ranks->sum(count, number, w->ranks->user);
+}
+
+static int largest_watched(int count, double *number, void *user)
+{
+  const watched_ranks *w = user;
+  return w->ranks->largest(count, number, w->ranks->user);
+}
+
+dvi_yee_ranks watch_ranks(watched_ranks *watched)
+{
+  dvi_yee_ranks ranks = *watched->ranks;
+  ranks.pass = pass_watched;
+  ranks.sum = sum_watched;
+  ranks.largest = largest_watched;
+  ranks.user = watched;
+  return ranks;
+}

@@ -34,11 +34,13 @@ typedef struct dvi_division_facts {
   int64_t owned[DVI_MESH_DIMENSION_MAX + 1];    /**< k-cells that belong to this process */
   int64_t ghosts[DVI_MESH_DIMENSION_MAX + 1];   /**< those that belong to others */
   int64_t bytes_in[DVI_MESH_DIMENSION_MAX + 1]; /**< that a refresh of a k-form receives */
+  int messages_in[DVI_MESH_DIMENSION_MAX + 1];  /**< in as many messages */
   int neighbours;                               /**< processes that own ghosts */
 } dvi_division_facts;
 
 /** What the modes of a divided field took. */
 typedef struct dvi_modes_facts {
+  int64_t unknowns;   /**< of all processes */
   int64_t zeros;      /**< zero eigenvalues, which are left out, as of dvi_field_modes */
   const char *solver; /**< of the equations with K - shift M: "mumps" factors the matrix; "ams",
                            "boomeramg" and "gamg" are multigrid methods in conjugate gradients */

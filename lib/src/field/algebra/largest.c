@@ -37,14 +37,14 @@ static dvi_status dot(const lanczos *s, const double *x, const double *y, double
 {
   dvi__accumulator sum = {.terms = 0};
   dvi__accumulate_products(&sum, s->n, x, y, s->rows != NULL ? s->rows->is_own : NULL);
-  if (s->rows != NULL) return s->rows->sum(s->rows->of, &sum, value);
+  if (s->rows != NULL) return s->rows->sum(s->rows->all, &sum, value);
   *value = dvi__accumulator_value(&sum);
   return DVI_OK;
 }
 
 static dvi_status largest(const lanczos *s, double *value)
 {
-  return s->rows != NULL ? s->rows->largest(s->rows->of, value) : DVI_OK;
+  return s->rows != NULL ? s->rows->largest(s->rows->all, value) : DVI_OK;
 }
 
 /* Give the largest size of an entry of a matrix. */
@@ -169,7 +169,7 @@ static dvi_status run(lanczos *s, double *bound)
 {
   double *room = NULL;
   dvi_status status = prepare(s, &room);
-  if (s->rows != NULL) status = s->rows->agree(s->rows->of, status);
+  if (s->rows != NULL) status = s->rows->agree(s->rows->all, status);
   if (status == DVI_OK && room != NULL) status = iterate(s, bound);
   dvi__definite_clear(&s->inverse);
   dvi__release(room);

@@ -13,11 +13,12 @@ typedef struct dvi__rows {
   /* Set x [rows] of the others' rows to theirs. */
   dvi_status (*refresh)(void *of, double *x);
   /* Give the sum, or the largest number, of all processes. */
-  dvi_status (*sum)(void *of, dvi__accumulator *sum, double *value);
-  dvi_status (*largest)(void *of, double *value);
+  dvi_status (*sum)(const void *all, dvi__accumulator *sum, double *value);
+  dvi_status (*largest)(const void *all, double *value);
   /* Agree whether all processes have succeeded so far. */
-  dvi_status (*agree)(void *of, dvi_status status);
-  void *of;
+  dvi_status (*agree)(const void *all, dvi_status status);
+  void *of;        /* the first argument of refresh, */
+  const void *all; /* and that of the others */
 } dvi__rows;
 
 /* Bound the largest eigenvalue from above, by at most a thousandth of it. K is positive

@@ -6,6 +6,7 @@
 #include "field/elastic/assemble.h"
 #include "field/elastic/contacts.h"
 #include "field/elastic/create.h"
+#include "field/mesh/share.h"
 
 /* ---- values ---- */
 
@@ -127,17 +128,24 @@ static void mark(dvi_elastic *e, int c)
     }
 }
 
-static dvi_status number(dvi_elastic *e)
+static void number(dvi_elastic *e)
 {
   int count = 0;
   for (int64_t k = 0; k < e->vertices * e->n; k++)
     e->unknown[k] = e->condition[k] < 0 ? count++ : -1;
   e->unknowns = count;
-  if (count > 0) return DVI_OK;
+}
+
+dvi_status dvi__solid_count_unknowns(dvi_elastic *e)
+{
+  for (int64_t k = 0; k < e->vertices * e->n; k++)
+    e->whole_unknowns += e->unknown[k] >= 0 && dvi__owns(e->mesh, 0, k / e->n);
+  DVI_TRY(dvi__count_all(e->mesh, 1, &e->whole_unknowns));
+  if (e->whole_unknowns > 0) return DVI_OK;
   return dvi__fail(DVI_BAD_ARGUMENT,
                    "elastic: all displacements of the %lld vertices are given, and nothing is "
                    "unknown: hold a smaller part",
-                   (long long)e->vertices);
+                   (long long)dvi__whole_count(e->mesh, 0));
 }
 
 /* Evaluate all conditions once, at time 0, and keep the values of those without time. */
@@ -180,6 +188,6 @@ dvi_status dvi__solid_take_conditions(dvi_elastic *e, const dvi_elastic_terms *t
     mark(e, c);
     e->is_driven |= is_time_dependent(condition);
   }
-  DVI_TRY(number(e));
+  number(e);
   return evaluate_all(e);
 }

@@ -6,6 +6,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "field/elastic/system.h"
+#include "field/mesh/share.h"
 #include "field/mesh/volume.h"
 
 /* ---- cells ---- */
@@ -68,6 +69,14 @@ static dvi_status make(const dvi_elastic_terms *terms, dvi_elastic *e)
   return DVI_OK;
 }
 
+/* What needs all processes: masses of nodes at the edge of a share, and what is found nowhere. */
+static dvi_status join(dvi_elastic *e)
+{
+  DVI_TRY(dvi__refresh(e->mesh, 0, e->mass));
+  DVI_TRY(dvi__solid_count_unknowns(e));
+  return dvi__solid_check_loads(e);
+}
+
 dvi_status dvi_elastic_create(const dvi_elastic_terms *terms, dvi_elastic **elastic)
 {
   if (terms == NULL || elastic == NULL)
@@ -77,8 +86,10 @@ dvi_status dvi_elastic_create(const dvi_elastic_terms *terms, dvi_elastic **elas
     return dvi__fail(DVI_BAD_ARGUMENT, "elastic: the size of the terms is %zu, not %zu",
                      terms->size, sizeof *terms);
   dvi_elastic *e = DVI_NEW(dvi_elastic, 1);
-  if (e == NULL) return dvi__fail(DVI_NO_MEMORY, "elastic: no memory for a solid");
-  const dvi_status status = make(terms, e);
+  dvi_status status = e != NULL ? make(terms, e)
+                                : dvi__fail(DVI_NO_MEMORY, "elastic: no memory for a solid");
+  if (terms->mesh != NULL) status = dvi__agree(terms->mesh, status);
+  if (status == DVI_OK && e != NULL) status = join(e);
   *elastic = e;
   if (status != DVI_OK) dvi_elastic_destroy(elastic);
   return status;

@@ -23,14 +23,14 @@ typedef struct dvi__solid_material {
 
 struct dvi_elastic {
   dvi_mesh *mesh;
-  int n; /* dimension */
-  int64_t vertices, cells, unknowns;
-  const int *vertex;   /* [cells*(n+1)] the mesh's */
-  const double *point; /* [vertices*n] the mesh's */
-  double *gradient;    /* [cells*(n+1)*n] of the barycentric coordinates, vertex by vertex */
-  double *volume;      /* [cells] above 0 */
-  double *mass;        /* [vertices] */
-  int *material;       /* [cells] */
+  int n;                                             /* dimension */
+  int64_t vertices, cells, unknowns, whole_unknowns; /* the last ones of all processes */
+  const int *vertex;                                 /* [cells*(n+1)] the mesh's */
+  const double *point;                               /* [vertices*n] the mesh's */
+  double *gradient; /* [cells*(n+1)*n] of the barycentric coordinates, vertex by vertex */
+  double *volume;   /* [cells] above 0 */
+  double *mass;     /* [vertices] */
+  int *material;    /* [cells] */
   dvi__solid_material *materials;
   int material_count;
   int *unknown;   /* [vertices*n] coordinates, or -1 */

@@ -7,17 +7,17 @@
 #include "field/elastic/cell.h"
 #include "field/elastic/create.h"
 #include "field/mesh/normal.h"
+#include "field/mesh/share.h"
 #include "field/mesh/volume.h"
 
 /* ---- one load ---- */
 
 static dvi_status check_load(const dvi_elastic *e, const dvi_elastic_load *load)
 {
-  int64_t count;
   if (load->part == NULL || load->force == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "elastic: a load has no %s",
                      load->part == NULL ? "part of the mesh" : "force");
-  (void)dvi_mesh_part_cells(e->mesh, load->part, e->n - 1, &count);
+  const int64_t count = dvi__part_total(e->mesh, load->part, e->n - 1);
   if (count <= 0)
     return dvi__fail(DVI_BAD_ARGUMENT,
                      "elastic: a load is set on part \"%s\", %s: name a part of %s, or of %s of "
@@ -32,7 +32,7 @@ static const int *cells_of(const dvi_elastic *e, const dvi_elastic_load *load, i
                            int64_t *count)
 {
   const int *cell = dvi_mesh_part_cells(e->mesh, load->part, e->n, count);
-  *is_facet = *count == 0;
+  *is_facet = dvi__part_total(e->mesh, load->part, e->n) == 0;
   return *is_facet ? dvi_mesh_part_cells(e->mesh, load->part, e->n - 1, count) : cell;
 }
 
@@ -45,22 +45,32 @@ static int is_movable(const dvi_elastic *e, int facet)
   return 0;
 }
 
-/* A traction acts on facets of the boundary, and moves something. */
+/* A traction acts on facets of the boundary. */
 static dvi_status check_facets(const dvi_elastic *e, const dvi_elastic_load *load)
 {
-  int is_facet, moves = 0;
+  int is_facet;
   int64_t count;
   const int *facet = cells_of(e, load, &is_facet, &count);
   for (int64_t i = 0; i < count && is_facet; i++) {
-    moves |= is_movable(e, facet[i]);
-    if (e->mesh->coface[2 * (int64_t)facet[i] + 1] < 0) continue;
+    if (dvi__is_outer(e->mesh, facet[i])) continue;
     const dvi__cell_name name = dvi__name_cell(e->mesh, e->n - 1, facet[i]);
     return dvi__fail(DVI_BAD_ARGUMENT,
                      "elastic: the load on part \"%s\" acts on %s, which is not at the boundary: "
                      "name a part of the boundary",
                      load->part, name.text);
   }
-  if (moves || !is_facet) return DVI_OK;
+  return DVI_OK;
+}
+
+/* A traction moves something. */
+static dvi_status check_effect(const dvi_elastic *e, const dvi_elastic_load *load)
+{
+  int is_facet;
+  int64_t count, movable = 0;
+  const int *facet = cells_of(e, load, &is_facet, &count);
+  for (int64_t i = 0; i < count && is_facet; i++) movable += is_movable(e, facet[i]);
+  DVI_TRY(dvi__count_all(e->mesh, 1, &movable));
+  if (movable > 0 || !is_facet) return DVI_OK;
   return dvi__fail(DVI_BAD_ARGUMENT,
                    "elastic: the load on part \"%s\" does nothing, because all displacements there "
                    "are given: leave it out, or hold a component less",
@@ -159,6 +169,12 @@ dvi_status dvi__solid_take_loads(dvi_elastic *e, const dvi_elastic_terms *terms)
   return evaluate_all(e);
 }
 
+dvi_status dvi__solid_check_loads(const dvi_elastic *e)
+{
+  for (int l = 0; l < e->load_count; l++) DVI_TRY(check_effect(e, e->loads + l));
+  return DVI_OK;
+}
+
 /* ---- obstacles ---- */
 
 static dvi_status refuse_obstacle(const dvi_obstacle *o, const char *what, double value,
@@ -205,6 +221,7 @@ dvi_status dvi__solid_take_obstacles(dvi_elastic *e, const dvi_elastic_terms *te
   if (terms->obstacles < 0 || (terms->obstacles > 0 && terms->obstacle == NULL))
     return dvi__fail(DVI_BAD_ARGUMENT, "elastic: %d obstacles, but none is given",
                      terms->obstacles);
+  if (terms->obstacles > 0) DVI_TRY(dvi__refuse_share(e->mesh, "elastic: an obstacle"));
   e->obstacle = DVI_NEW(dvi_obstacle, terms->obstacles);
   e->is_outer = DVI_NEW(int8_t, e->vertices);
   if (e->obstacle == NULL || e->is_outer == NULL)

@@ -6,7 +6,6 @@
 #include "core/status.h"
 #include "field/elastic/cell.h"
 #include "field/elastic/create.h"
-#include "field/mesh/share.h"
 #include "num/eigen.h"
 
 /* ---- the mesh ---- */
@@ -29,7 +28,6 @@ dvi_status dvi__solid_take_mesh(dvi_elastic *e, const dvi_mesh *mesh)
       return dvi__fail(DVI_UNSUPPORTED,
                        "elastic: axis %d of the mesh is one of time: a solid is in space alone", i);
   }
-  DVI_TRY(dvi__refuse_share(mesh, "elastic: a solid"));
   e->mesh = dvi_mesh_share(mesh);
   e->n = mesh->n;
   e->vertices = mesh->count[0];
@@ -76,10 +74,9 @@ static dvi_status check_constants(int n, const dvi_elastic_material *m)
 
 static dvi_status check_material(const dvi_elastic *e, const dvi_elastic_material *m)
 {
-  int64_t count;
   if (m->part == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "elastic: a material has no part of the mesh");
-  (void)dvi_mesh_part_cells(e->mesh, m->part, e->n, &count);
+  const int64_t count = dvi__part_total(e->mesh, m->part, e->n);
   if (count <= 0)
     return dvi__fail(DVI_BAD_ARGUMENT,
                      "elastic: a material is set on part \"%s\", %s: name a part of %s", m->part,

@@ -5,6 +5,7 @@
 #include "core/status.h"
 #include "field/elastic/assemble.h"
 #include "field/elastic/cell.h"
+#include "field/mesh/share.h"
 
 /* ---- displacements and coordinates ---- */
 
@@ -57,28 +58,47 @@ static dvi_status refuse_numbers(const dvi_elastic *e, int64_t cell, const char 
                    numbers, name.text);
 }
 
+/* Exact sums over cells, which do not depend on the division among processes. */
+typedef struct energy_sums {
+  dvi__block_sum kinetic, stored, load;
+} energy_sums;
+
 static dvi_status add_energies(const dvi_elastic *e, int64_t cell, double t, const double *u,
-                               const double *rate, dvi_elastic_energies *sum)
+                               const double *rate, energy_sums *sum)
 {
   const int n = e->n, numbers = (n + 1) * n;
   const double part = e->materials[e->material[cell]].rho * e->volume[cell] / (n + 1);
   double own[DVI__SOLID_NUMBERS], speed[DVI__SOLID_NUMBERS] = {0}, f[DVI__SOLID_NUMBERS] = {0},
-                                  stored;
+                                  stored, kinetic = 0, load = 0;
   dvi__solid_gather(e, cell, u, own);
   if (rate != NULL) dvi__solid_gather(e, cell, rate, speed);
   for (int k = 0; k < numbers; k++)
     if (!isfinite(own[k])) return refuse_numbers(e, cell, "energies");
   int returned = dvi__solid_stored(e, cell, own, &stored);
   if (returned != 0) return dvi__solid_refuse(e, cell, returned);
-  sum->stored += stored;
   returned = dvi__solid_add_load(e, cell, t, f);
   if (returned != 0) return refuse_load(e, cell, returned);
   for (int k = 0; k < numbers; k++) {
-    sum->kinetic += part * speed[k] * speed[k] / 2;
-    sum->load -= f[k] * own[k];
+    kinetic += part * speed[k] * speed[k] / 2;
+    load -= f[k] * own[k];
   }
-  if (isfinite(sum->kinetic) && isfinite(sum->stored) && isfinite(sum->load)) return DVI_OK;
-  return refuse_numbers(e, cell, "energies");
+  if (!isfinite(kinetic) || !isfinite(stored) || !isfinite(load))
+    return refuse_numbers(e, cell, "energies");
+  dvi__block_sum_add(&sum->kinetic, kinetic);
+  dvi__block_sum_add(&sum->stored, stored);
+  dvi__block_sum_add(&sum->load, load);
+  return DVI_OK;
+}
+
+/* Add the energies of a part's cells that are this process's. */
+static dvi_status add_part(const dvi_elastic *e, double t, const double *u, const double *rate,
+                           const char *part, energy_sums *sum)
+{
+  int64_t count;
+  const int *cell = dvi_mesh_part_cells(e->mesh, part, e->n, &count);
+  for (int64_t i = 0; i < count; i++)
+    if (dvi__owns(e->mesh, e->n, cell[i])) DVI_TRY(add_energies(e, cell[i], t, u, rate, sum));
+  return DVI_OK;
 }
 
 dvi_status dvi_elastic_energy(const dvi_elastic *elastic, double t, const double *u,
@@ -87,17 +107,23 @@ dvi_status dvi_elastic_energy(const dvi_elastic *elastic, double t, const double
   if (elastic == NULL || u == NULL || energies == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT,
                      "elastic: a solid, displacements and a place for energies are needed");
-  int64_t count;
   const char *name = part != NULL ? part : "all";
-  const int *cell = dvi_mesh_part_cells(elastic->mesh, name, elastic->n, &count);
+  const dvi_mesh *mesh = elastic->mesh;
+  const int64_t count = dvi__part_total(mesh, name, elastic->n);
   if (count <= 0)
     return dvi__fail(DVI_BAD_ARGUMENT,
                      "elastic: the energy of part \"%s\" is asked, %s: name a part of %s", name,
                      count < 0 ? "which the mesh has not" : "which has no cells",
                      elastic->n == 3 ? "tetrahedra" : "triangles");
-  dvi_elastic_energies sum = {0};
-  for (int64_t i = 0; i < count; i++) DVI_TRY(add_energies(elastic, cell[i], t, u, rate, &sum));
-  *energies = sum;
+  energy_sums sum = {.kinetic = {.count = 0}};
+  dvi_elastic_energies found;
+  DVI_TRY(dvi__agree(mesh, add_part(elastic, t, u, rate, name, &sum)));
+  DVI_TRY(dvi__sum_of_all(mesh, dvi__block_sum_end(&sum.kinetic), &found.kinetic));
+  DVI_TRY(dvi__sum_of_all(mesh, dvi__block_sum_end(&sum.stored), &found.stored));
+  DVI_TRY(dvi__sum_of_all(mesh, dvi__block_sum_end(&sum.load), &found.load));
+  if (!isfinite(found.kinetic) || !isfinite(found.stored) || !isfinite(found.load))
+    return dvi__fail(DVI_NOT_FINITE, "elastic: the energies are not finite");
+  *energies = found;
   return DVI_OK;
 }
 

@@ -7,6 +7,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "field/elastic/potentials.h"
+#include "field/mesh/share.h"
 
 void dvi__solid_system_destroy(dvi__solid_system **system)
 {
@@ -92,6 +93,7 @@ dvi_status dvi_elastic_system_terms(dvi_elastic *elastic, dvi_system_terms *term
 {
   if (elastic == NULL || terms == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "elastic: a solid and a place for terms are needed");
+  DVI_TRY(dvi__refuse_share(elastic->mesh, "elastic: the mechanical system of a solid"));
   if (elastic->system == NULL) {
     elastic->system = DVI_NEW(dvi__solid_system, 1);
     if (elastic->system == NULL) return dvi__fail(DVI_NO_MEMORY, "elastic: no memory for a system");

@@ -6,7 +6,8 @@
 #include <math.h>
 
 #include "core/status.h"
-#include "field/elastic_avi/plan.h"
+#include "field/elastic_avi/borders.h"
+#include "field/mesh/share.h"
 #include "field/step/alarm.h"
 
 enum { STEPS_BETWEEN_CHECKS = 64 };
@@ -55,11 +56,35 @@ static dvi_status stand_before(dvi__solid_avi *avi, double limit, dvi__solid_hal
   return dvi__fail_in(refuse(avi, &halt), "%s: at t = %g", avi->method, halt.t);
 }
 
+/* The same where processes share the solid. The first event that fails on one of them is known,
+ * since each of them has its events in order, and failures change later times alone. */
+static dvi_status stand_before_first(dvi__solid_avi *avi, double limit, dvi__solid_halt halt)
+{
+  const dvi_mesh *mesh = avi->solid->mesh;
+  const double before = avi->clock.t;
+  double first = halt.returned != 0 ? -halt.t : -(double)INFINITY;
+  DVI_TRY(dvi__largest_of_all(mesh, 1, &first));
+  if (isinf(first)) return dvi__solid_complete(avi);
+  (void)redo(avi, nextafter(-first, -INFINITY));
+  DVI_TRY(dvi__solid_complete(avi));
+  avi->clock.t = fmin(fmax(avi->clock.t, before), limit);
+  dvi_status status = DVI_OK;
+  if (halt.returned != 0 && halt.t == -first)
+    status = dvi__fail_in(refuse(avi, &halt), "%s: at t = %g", avi->method, halt.t);
+  return dvi__agree(mesh, status);
+}
+
 static dvi_status run(dvi__solid_avi *avi, double t)
 {
   const double limit = limit_of(avi, t), before = avi->clock.t;
   avi->view->t = (double)NAN; /* events of the present time may be left after a failure */
   const dvi__solid_halt halt = dvi__solid_run(avi, limit);
+  if (avi->borders != NULL) {
+    avi->clock.t = before;
+    DVI_TRY(stand_before_first(avi, limit, halt));
+    avi->clock.t = t;
+    return DVI_OK;
+  }
   if (halt.returned != 0) {
     avi->clock.t = before;
     return stand_before(avi, limit, halt);
@@ -94,12 +119,13 @@ static dvi_status compare_energy(dvi__solid_avi *avi)
 static dvi_status check_nodes(const dvi__solid_avi *avi)
 {
   for (int64_t v = 0; v < avi->vertices; v++)
-    for (int i = 0; i < avi->n; i++)
+    for (int i = 0; i < avi->n && dvi__owns(avi->solid->mesh, 0, v); i++)
       if (!isfinite(avi->state.node[v].u[i]) || !isfinite(avi->state.node[v].v[i]))
         return dvi__fail(DVI_NOT_FINITE,
                          "%s: vertex %lld is not finite at t = %g: the run cannot go on; take "
                          "shorter steps",
-                         avi->method, (long long)v, avi->clock.t);
+                         avi->method, (long long)dvi__whole_number(avi->solid->mesh, 0, v),
+                         avi->clock.t);
   return DVI_OK;
 }
 
@@ -107,12 +133,12 @@ static dvi_status advance(dvi__solid_avi *avi, double t)
 {
   while (time_of_check(avi) <= t) {
     DVI_TRY(run(avi, time_of_check(avi)));
-    DVI_TRY(check_nodes(avi));
+    DVI_TRY(dvi__agree(avi->solid->mesh, check_nodes(avi)));
     DVI_TRY(compare_energy(avi));
   }
   const int64_t events = avi->clock.events;
   DVI_TRY(run(avi, t));
-  return avi->clock.events > events ? check_nodes(avi) : DVI_OK;
+  return avi->clock.events > events ? dvi__agree(avi->solid->mesh, check_nodes(avi)) : DVI_OK;
 }
 
 /* What is not finite is taken back: to the last look, or to the time before. */
@@ -125,6 +151,7 @@ dvi_status dvi__solid_avi_advance(dvi__solid_avi *avi, double t)
     dvi__solid_take_back(avi);
   } else {
     (void)redo(avi, limit_of(avi, before));
+    (void)dvi__solid_complete(avi);
     avi->clock.t = before;
   }
   return status;

@@ -4,8 +4,10 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "field/elastic_avi/borders.h"
 #include "field/elastic_avi/layout.h"
 #include "field/elastic_avi/parts.h"
+#include "field/mesh/share.h"
 
 static void destroy_view(dvi__solid_view *view)
 {
@@ -24,6 +26,7 @@ void dvi__solid_avi_destroy(dvi__solid_avi **avi)
   for (size_t i = 0; i < sizeof memory / sizeof *memory; i++) dvi__release(memory[i]);
   destroy_view(s->view);
   dvi__solid_parts_destroy(&s->parts);
+  dvi__solid_borders_destroy(&s->borders);
   dvi__release(s);
   *avi = NULL;
 }
@@ -61,9 +64,12 @@ dvi_status dvi__solid_avi_create(const dvi_elastic *solid, const dvi__solid_requ
   *avi = NULL;
   DVI_TRY(dvi__solid_plan_make(solid, request, &plan));
   dvi__solid_avi *s = DVI_NEW(dvi__solid_avi, 1);
-  if (s == NULL) {
+  dvi_status status = dvi__agree(solid->mesh,
+                                 s != NULL ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "avi: no memory"));
+  if (status != DVI_OK || s == NULL) {
     dvi__solid_plan_clear(&plan);
-    return dvi__fail(DVI_NO_MEMORY, "avi: no memory");
+    dvi__release(s);
+    return status;
   }
   *s = (dvi__solid_avi){.solid = solid,
                         .method = request->is_equal ? "verlet" : "avi",
@@ -79,7 +85,7 @@ dvi_status dvi__solid_avi_create(const dvi_elastic *solid, const dvi__solid_requ
                         .bound = plan.tightest,
                         .band = request->band > 0 ? request->band : 2,
                         .threads = request->threads};
-  dvi_status status = allocate(s);
+  status = dvi__agree(solid->mesh, allocate(s));
   if (status == DVI_OK) status = dvi__solid_lay_out(&plan, s);
   if (status == DVI_OK && (s->is_free || s->threads > 1))
     status = dvi__solid_parts_create(&plan, s);

@@ -87,7 +87,7 @@ typedef struct dvi__solid_clock {
 typedef struct dvi__solid_state {
   dvi__solid_node *node;   /* [vertices] */
   int64_t *count;          /* [cells] of free steps: events so far */
-  double *worked;          /* [cells] sizes of works of loads and of driven nodes. Or empty */
+  double *worked;          /* [vertices] sizes of works of loads and of given motion. Or empty */
   double *stretch;         /* [viscous*12] displacements that the damping has answered so far */
   dvi__solid_touch *touch; /* [vertices] with obstacles */
   dvi__solid_push *push;   /* [pushes] */
@@ -118,11 +118,14 @@ typedef struct dvi__solid_avi {
   int is_linear;       /* forces are those of small strains at rest */
   int classes;
   int64_t class_end[DVI__SOLID_CLASSES];
+  int64_t class_events[DVI__SOLID_CLASSES]; /* events of a slot on all processes */
   double shortest, longest, bound, band;
   int threads;
-  struct dvi__solid_parts *parts; /* NULL for classes on a single thread */
-  size_t size;                    /* bytes of the block */
-  void *block, *kept;             /* the state, and that of an earlier time */
+  struct dvi__solid_parts *parts;     /* NULL for classes on a single thread */
+  struct dvi__solid_borders *borders; /* of a share, or NULL */
+  int is_lost;                        /* processes could not give each other their values */
+  size_t size;                        /* bytes of the block */
+  void *block, *kept;                 /* the state, and that of an earlier time */
   dvi__solid_state state;
   dvi__solid_clock clock, kept_clock;
   dvi__solid_view *view;

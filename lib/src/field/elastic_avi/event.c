@@ -95,20 +95,20 @@ static void pay_damping(dvi__solid_avi *avi, int64_t c, const double *u, const d
   for (int k = 0; k < numbers; k++) f[k] += answer[k] / avi->cell[c].step;
 }
 
-/* Sum the sizes of what loads and driven nodes work. */
-static double size_of_work(const dvi__solid_avi *avi, int64_t c, const double *v, const double *f,
-                           const double *load)
+/* Add the sizes of what loads and driven nodes work to those of the nodes. */
+static void add_works(dvi__solid_avi *avi, int64_t c, const double *v, const double *f,
+                      const double *load)
 {
   const int n = avi->n;
-  double sum = 0;
   for (int a = 0; a <= n; a++) {
-    const int kind = avi->node_kind[avi->cell[c].corner[a]];
+    const int vertex = avi->cell[c].corner[a], kind = avi->node_kind[vertex];
+    double sum = 0;
     for (int i = 0; i < n; i++) {
       const int is_driven = (kind & DVI__NODE_DRIVEN) && (kind & 1 << i);
       sum += fabs((is_driven ? f[a * n + i] : load[a * n + i]) * v[a * n + i]);
     }
+    avi->state.worked[vertex] += sum * avi->cell[c].step;
   }
-  return sum * avi->cell[c].step;
 }
 
 static int act_guarded(dvi__solid_avi *avi, int64_t c, double t)
@@ -123,7 +123,7 @@ static int act_guarded(dvi__solid_avi *avi, int64_t c, double t)
                                         dvi__solid_touch_of(avi, corner[a]));
     if (returned != 0) return returned;
     if (avi->state.worked != NULL)
-      avi->state.worked[c] += fabs(dvi__solid_driven_energy(avi, corner[a], node) - before);
+      avi->state.worked[corner[a]] += fabs(dvi__solid_driven_energy(avi, corner[a], node) - before);
     for (int i = 0; i < n; i++) {
       u[a * n + i] = node->u[i];
       v[a * n + i] = node->v[i];
@@ -131,7 +131,7 @@ static int act_guarded(dvi__solid_avi *avi, int64_t c, double t)
   }
   const int returned = dvi__solid_pull(avi, c, t, u, f, load);
   if (returned != 0) return returned;
-  if (avi->state.worked != NULL) avi->state.worked[c] += size_of_work(avi, c, v, f, load);
+  if (avi->state.worked != NULL) add_works(avi, c, v, f, load);
   if (avi->cell[c].kind & DVI__CELL_VISCOUS) pay_damping(avi, c, u, v, f);
   for (int a = 0; a <= n; a++) {
     dvi__solid_node *node = avi->state.node + corner[a];

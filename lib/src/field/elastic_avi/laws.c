@@ -13,6 +13,7 @@
 #include "field/algebra/random.h"
 #include "field/elastic/system.h"
 #include "field/elastic_avi/march.h"
+#include "field/mesh/share.h"
 
 enum { MOMENTA = 2 * DVI__SOLID_AXES };
 
@@ -113,8 +114,8 @@ static dvi_status look(const laws *s, int is_start, record *seen)
   seen->energy_change = fmax(seen->energy_change, fabs(energy - seen->energy));
   seen->energy_size = fmax(seen->energy_size, e->kinetic + e->stored);
   for (int k = 0; k < s->momenta; k++) {
-    double size;
-    const double now = dvi__solid_momentum(s->avi, k, &size);
+    double now, size;
+    DVI_TRY(dvi__solid_momentum(s->avi, k, &now, &size));
     if (is_start) seen->momentum[k] = now;
     seen->change[k] = fmax(seen->change[k], fabs(now - seen->momentum[k]));
     seen->size[k] = fmax(seen->size[k], size);
@@ -157,6 +158,7 @@ dvi_status dvi_elastic_laws(const dvi_elastic *elastic, const dvi_march_options 
     return dvi__fail(DVI_BAD_ARGUMENT, "laws: a solid, at least 2 steps, and room for the laws are "
                                        "needed");
   *count = 0;
+  DVI_TRY(dvi__refuse_share(elastic->mesh, "laws: a solid"));
   DVI_TRY(dvi__solid_ask(elastic, options, &request));
   laws s = {.solid = elastic, .n = elastic->n, .momenta = momenta_of(elastic)};
   if (s.momenta == 0 && !has_energy(elastic)) return DVI_OK;

@@ -7,6 +7,8 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "field/elastic_avi/borders.h"
+#include "field/mesh/share.h"
 
 enum { TURNS = 3 };
 
@@ -34,22 +36,37 @@ static void take_cell(const dvi__solid_plan *plan, int64_t name, int64_t c, dvi_
   avi->step[c] = cell->step;
 }
 
-static int group_of(const dvi__solid_plan *plan, int64_t name)
+static int group_of(const dvi_elastic *solid, const dvi__solid_plan *plan, int64_t name)
 {
-  const int class = isinf(plan->step[name]) ? plan->classes : plan->class[name];
+  const int acts = isfinite(plan->step[name]) && dvi__solid_acts_here(solid, name),
+            class = acts ? plan->class[name] : plan->classes;
   return class * TURNS + plan->turn[name];
 }
 
-/* Number cells by classes and turns. Those without events come last. */
+/* Number cells by classes and turns. Those without events here come last. */
 static void number_cells(const dvi__solid_plan *plan, dvi__solid_avi *avi)
 {
   int64_t begin[(DVI__SOLID_CLASSES + 1) * TURNS + 1] = {0};
   const int64_t *class_begin = begin;
-  for (int64_t c = 0; c < avi->cells; c++) begin[1 + group_of(plan, c)]++;
+  for (int64_t c = 0; c < avi->cells; c++) begin[1 + group_of(avi->solid, plan, c)]++;
   for (int k = 0; k < (plan->classes + 1) * TURNS; k++) begin[k + 1] += begin[k];
   for (int k = 0; k < plan->classes; k++) avi->class_end[k] = *(class_begin += TURNS);
   avi->active = *class_begin;
-  for (int64_t c = 0; c < avi->cells; c++) take_cell(plan, c, begin[group_of(plan, c)]++, avi);
+  for (int64_t c = 0; c < avi->cells; c++)
+    take_cell(plan, c, begin[group_of(avi->solid, plan, c)]++, avi);
+}
+
+/* Count the events of slots on all processes. */
+static dvi_status count_events(dvi__solid_avi *avi)
+{
+  const dvi_mesh *mesh = avi->solid->mesh;
+  for (int j = 0; j < avi->classes; j++) {
+    const int64_t first = j > 0 ? avi->class_end[j - 1] : 0;
+    if (j > 0) avi->class_events[j] = avi->class_events[j - 1];
+    for (int64_t c = first; c < avi->class_end[j]; c++)
+      avi->class_events[j] += dvi__owns(mesh, avi->n, avi->cell[c].name);
+  }
+  return dvi__count_all(mesh, avi->classes, avi->class_events);
 }
 
 static void list_cells(dvi__solid_avi *avi)
@@ -143,7 +160,7 @@ static dvi_status lay_out_state(dvi__solid_avi *avi)
   const part parts[] = {
       {(void **)&s->node, vertices * sizeof *s->node},
       {(void **)&s->count, avi->is_free ? cells * sizeof *s->count : 0},
-      {(void **)&s->worked, is_worked ? cells * sizeof *s->worked : 0},
+      {(void **)&s->worked, is_worked ? vertices * sizeof *s->worked : 0},
       {(void **)&s->stretch, (size_t)avi->viscous_count * DVI__SOLID_NUMBERS * sizeof *s->stretch},
       {(void **)&s->touch, meets ? vertices * sizeof *s->touch : 0},
       {(void **)&s->push, (size_t)avi->pushes * sizeof *s->push}};
@@ -164,8 +181,16 @@ dvi_status dvi__solid_lay_out(const dvi__solid_plan *plan, dvi__solid_avi *avi)
 {
   number_cells(plan, avi);
   list_cells(avi);
-  if (avi->decay != NULL) find_decay(avi);
+  DVI_TRY(count_events(avi));
+  DVI_TRY(dvi__solid_borders_create(avi));
+  if (avi->decay != NULL) {
+    find_decay(avi);
+    DVI_TRY(dvi__refresh(avi->solid->mesh, 0, avi->decay));
+  }
   find_node_kinds(avi);
   find_cell_kinds(avi);
-  return lay_out_state(avi);
+  const dvi_status status = dvi__agree(avi->solid->mesh, lay_out_state(avi));
+  for (int64_t v = 0; v < avi->vertices && status == DVI_OK; v++)
+    avi->state.node[v].inverse = 1 / avi->solid->mass[v];
+  return status;
 }

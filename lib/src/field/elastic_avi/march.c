@@ -7,6 +7,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "field/elastic_avi/plan.h"
+#include "field/mesh/share.h"
 #include "field/step/bound.h"
 #include "field/step/classes.h"
 #include "march/kind.h"
@@ -58,10 +59,12 @@ static dvi_status start(void *self, const dvi_march_state *state)
   dvi__solid_avi *avi = self;
   const int64_t size = avi->vertices * avi->n;
   double *rate = state->E != NULL ? DVI_NEW(double, size) : NULL;
+  dvi_status status = DVI_OK;
   if (state->E != NULL && rate == NULL)
-    return dvi__fail(DVI_NO_MEMORY, "%s: no memory for a start", avi->method);
+    status = dvi__fail(DVI_NO_MEMORY, "%s: no memory for a start", avi->method);
   for (int64_t i = 0; i < size && rate != NULL; i++) rate[i] = -state->E[i];
-  const dvi_status status = dvi__solid_avi_start(avi, state->t, state->A, rate);
+  status = dvi__agree(avi->solid->mesh, status);
+  if (status == DVI_OK) status = dvi__solid_avi_start(avi, state->t, state->A, rate);
   dvi__release(rate);
   return status;
 }
@@ -137,7 +140,8 @@ static dvi_status observe(const void *self, int i, double *value)
                              avi->view->growth,
                              avi->view->hits};
   double size;
-  *value = what <= HITS ? energies[what] : dvi__solid_momentum(avi, what - MOMENTA, &size);
+  if (what > HITS) return dvi__solid_momentum(avi, what - MOMENTA, value, &size);
+  *value = energies[what];
   return DVI_OK;
 }
 
@@ -153,13 +157,40 @@ static void facts(const void *self, dvi_march_facts *facts)
 
 static dvi_status save(const void *self, dvi__sections_writer *writer)
 {
-  dvi__solid_avi_save(self, writer);
-  return DVI_OK;
+  return dvi__solid_avi_save(self, writer);
 }
 
 static dvi_status load(void *self, const dvi__sections *sections)
 {
   return dvi__solid_avi_load(self, sections);
+}
+
+/* ---- processes ---- */
+
+static dvi_status agree(const void *self, dvi_status status)
+{
+  return dvi__agree(((const dvi__solid_avi *)self)->solid->mesh, status);
+}
+
+static int writes(const void *self)
+{
+  return dvi__is_first(((const dvi__solid_avi *)self)->solid->mesh);
+}
+
+static int is_lost(const void *self)
+{
+  return ((const dvi__solid_avi *)self)->is_lost;
+}
+
+/* What needs values of other processes' nodes within a slot is refused on shares. */
+static dvi_status check_share(const dvi_elastic *e, const dvi__solid_request *request)
+{
+  int is_viscous = 0;
+  for (int i = 0; i < e->material_count; i++) is_viscous |= e->materials[i].beta > 0;
+  if (is_viscous) DVI_TRY(dvi__refuse_share(e->mesh, "march: a damping beta"));
+  if (request->is_free) DVI_TRY(dvi__refuse_share(e->mesh, "march: avi:classes=no"));
+  return request->threads > 1 ? dvi__refuse_share(e->mesh, "march: a solid on several threads")
+                              : DVI_OK;
 }
 
 /* ---- create ---- */
@@ -168,7 +199,8 @@ static dvi_status load(void *self, const dvi__sections *sections)
   {                                                                                       \
     .name = called, .destroy = destroy, .start = start, .advance = advance, .time = time, \
     .size = size, .sample = sample, .observables = observables, .observable = observable, \
-    .observe = observe, .facts = facts, .save = save, .load = load,                       \
+    .observe = observe, .facts = facts, .save = save, .load = load, .agree = agree,       \
+    .writes = writes, .is_lost = is_lost,                                                 \
   }
 
 static const dvi__march_kind kind_avi = KIND("avi"), kind_verlet = KIND("verlet");
@@ -181,6 +213,10 @@ dvi_status dvi_elastic_march_create(const dvi_elastic *elastic, const dvi_march_
   if (march == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "march: a place for the march is needed");
   *march = NULL;
   DVI_TRY(dvi__solid_ask(elastic, options, &request));
+  DVI_TRY(check_share(elastic, &request));
   DVI_TRY(dvi__solid_avi_create(elastic, &request, &avi));
-  return dvi__march_wrap(request.is_equal ? &kind_verlet : &kind_avi, avi, march);
+  const dvi_status status = dvi__agree(
+      elastic->mesh, dvi__march_wrap(request.is_equal ? &kind_verlet : &kind_avi, avi, march));
+  if (status != DVI_OK) dvi_march_destroy(march);
+  return status;
 }

@@ -143,6 +143,7 @@ static dvi_status make_calendar(const dvi__solid_avi *avi, dvi__solid_part *p)
     rate += 1 / avi->step[p->cell[i]];
     longest = fmax(longest, avi->step[p->cell[i]]);
   }
+  if (p->count == 0) rate = longest = avi->longest;
   return dvi__calendar_create(p->count, longest, rate, DVI__CELL_AHEAD, &p->calendar);
 }
 

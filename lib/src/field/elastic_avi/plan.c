@@ -17,6 +17,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "field/elastic_avi/slabs.h"
+#include "field/mesh/share.h"
 #include "march/kind.h"
 
 static const double rounding = 1e-12;
@@ -77,18 +78,37 @@ static dvi_status find_common_bound(const dvi_elastic *e, dvi__solid_plan *plan)
   return DVI_OK;
 }
 
+/* Give the first of the cells with the least bound by itself, by its number in the whole mesh, and
+ * where it is. */
+static dvi_status find_tightest(const dvi_elastic *e, const dvi__solid_plan *plan, double *number,
+                                double x[DVI__SOLID_AXES])
+{
+  const double nowhere = -(double)INFINITY, own = -plan->least_here;
+  const int64_t cell = plan->tightest_cell;
+  double least = own;
+  DVI_TRY(dvi__largest_of_all(e->mesh, 1, &least));
+  const double here = own == least ? -(double)dvi__whole_number(e->mesh, e->n, cell) : nowhere;
+  *number = here;
+  DVI_TRY(dvi__largest_of_all(e->mesh, 1, number));
+  for (int i = 0; i < e->n; i++)
+    x[i] = here == *number ? e->point[(int64_t)e->vertex[cell * (e->n + 1)] * e->n + i] : nowhere;
+  *number = -*number;
+  return dvi__largest_of_all(e->mesh, e->n, x);
+}
+
 static dvi_status find_fraction(const dvi_elastic *e, const dvi__solid_request *request,
                                 const dvi__solid_plan *plan, double *fraction)
 {
+  double number, x[DVI__SOLID_AXES] = {0};
   *fraction = request->fraction > 0 ? request->fraction : 0.5;
   if (request->step > 0) *fraction = request->step / plan->tightest;
   if (*fraction < 1) return DVI_OK;
-  const double *x = e->point + (int64_t)e->vertex[plan->tightest_cell * (e->n + 1)] * e->n;
+  DVI_TRY(find_tightest(e, plan, &number, x));
   return dvi__fail(DVI_BAD_ARGUMENT,
                    "%s: steps of %g times their bounds are not stable; the least bound is %.9g, "
-                   "of cell %lld near (%g, %g, %g): take a shorter step",
-                   request->is_equal ? "verlet" : "avi", *fraction, plan->tightest,
-                   (long long)plan->tightest_cell, x[0], x[1], e->n > 2 ? x[2] : 0.0);
+                   "of cell %.0f near (%g, %g, %g): take a shorter step",
+                   request->is_equal ? "verlet" : "avi", *fraction, plan->tightest, number, x[0],
+                   x[1], x[2]);
 }
 
 static void choose_classes(const dvi_elastic *e, double fraction, double span,
@@ -111,22 +131,37 @@ static void choose_free(const dvi_elastic *e, double fraction, double span, dvi_
     if (isfinite(plan->bound[c])) plan->step[c] = dvi__fit_step(fraction * plan->bound[c], span);
 }
 
+/* Replace lengths by the least one, and the longest one, of all processes. */
+static dvi_status find_extremes(const dvi_elastic *e, double *least, double *most)
+{
+  double extreme[2] = {-*least, *most};
+  DVI_TRY(dvi__largest_of_all(e->mesh, 2, extreme));
+  *least = -extreme[0];
+  *most = extreme[1];
+  return DVI_OK;
+}
+
 static dvi_status choose(const dvi_elastic *e, const dvi__solid_request *request,
                          dvi__solid_plan *plan)
 {
-  double fraction;
+  double fraction, none = 0;
   const double span = request->step > 0 ? 0 : request->span;
-  plan->classes = 1;
-  DVI_TRY(find_bounds(e, plan));
+  plan->least_here = plan->tightest;
+  DVI_TRY(find_extremes(e, &plan->tightest, &none));
   if (request->is_equal) DVI_TRY(find_common_bound(e, plan));
   DVI_TRY(find_fraction(e, request, plan, &fraction));
+  plan->classes = 1;
   (request->is_free ? choose_free : choose_classes)(e, fraction, span, plan);
   plan->shortest = INFINITY;
   for (int64_t c = 0; c < e->cells; c++) {
     plan->shortest = fmin(plan->shortest, plan->step[c]);
     if (isfinite(plan->step[c])) plan->longest = fmax(plan->longest, plan->step[c]);
   }
-  return DVI_OK;
+  double classes = plan->classes;
+  DVI_TRY(find_extremes(e, &plan->shortest, &plan->longest));
+  DVI_TRY(dvi__largest_of_all(e->mesh, 1, &classes));
+  plan->classes = (int)classes;
+  return dvi__solid_slabs_make(e, request, plan);
 }
 
 dvi_status dvi__solid_plan_make(const dvi_elastic *solid, const dvi__solid_request *request,
@@ -139,10 +174,11 @@ dvi_status dvi__solid_plan_make(const dvi_elastic *solid, const dvi__solid_reque
                             .turn = DVI_NEW(uint8_t, solid->cells)};
   const int has_memory = plan->bound && plan->step && plan->class && plan->slab && plan->turn;
   dvi_status status = has_memory
-                          ? choose(solid, request, plan)
+                          ? find_bounds(solid, plan)
                           : dvi__fail(DVI_NO_MEMORY, "avi: no memory for the steps of %lld cells",
                                       (long long)solid->cells);
-  if (status == DVI_OK) status = dvi__solid_slabs_make(solid, request, plan);
+  status = dvi__agree(solid->mesh, status);
+  if (status == DVI_OK && has_memory) status = choose(solid, request, plan);
   if (status != DVI_OK) dvi__solid_plan_clear(plan);
   return status;
 }

@@ -21,8 +21,9 @@ typedef struct dvi__solid_plan {
   int *slab;     /* [cells] below `slabs` */
   uint8_t *turn; /* [cells] 0 to 2, the order in a class */
   int classes, slabs;
-  double shortest, longest, tightest; /* steps, and the least bound */
-  int64_t tightest_cell;
+  double shortest, longest, tightest; /* steps, and the least bound, of all processes */
+  double least_here;                  /* least bound of a cell by itself of this process, */
+  int64_t tightest_cell;              /* and which cell has it */
 } dvi__solid_plan;
 
 /* Make the plan. On failure nothing is owned. */
@@ -51,11 +52,12 @@ dvi_status dvi__solid_avi_see(const dvi__solid_avi *avi);
 dvi_status dvi__solid_avi_look(const dvi__solid_avi *avi);
 
 /* Give the component k of m u' of the view, or from k = n on that of x cross m u' about the origin,
- * and the sum of the sizes of its terms. A linear solid knows turns of X alone in place of x. */
-double dvi__solid_momentum(const dvi__solid_avi *avi, int k, double *size);
+ * and the sum of the sizes of its terms on this process. A linear solid knows turns of X alone in
+ * place of x. */
+dvi_status dvi__solid_momentum(const dvi__solid_avi *avi, int k, double *value, double *size);
 
 /* Put the section "elastic", and take it back. */
-void dvi__solid_avi_save(const dvi__solid_avi *avi, dvi__sections_writer *writer);
+dvi_status dvi__solid_avi_save(const dvi__solid_avi *avi, dvi__sections_writer *writer);
 dvi_status dvi__solid_avi_load(dvi__solid_avi *avi, const dvi__sections *sections);
 
 #endif

@@ -3,7 +3,7 @@
  * products t_0 + j h_K, never running sums. */
 #include <math.h>
 
-#include "field/elastic_avi/engine.h"
+#include "field/elastic_avi/borders.h"
 
 int dvi__solid_class_of_slot(const dvi__solid_avi *avi, int64_t slot)
 {
@@ -12,19 +12,32 @@ int dvi__solid_class_of_slot(const dvi__solid_avi *avi, int64_t slot)
   return j;
 }
 
+/* Let the events of a slot happen up to one that fails. */
+static dvi__solid_halt run_slot(dvi__solid_avi *avi, int class, double t)
+{
+  const int64_t end = avi->class_end[class];
+  for (int64_t c = 0; c < end; c++) {
+    if (c + DVI__CELL_AHEAD < end) DVI__FETCH_CELL(avi->cell + c + DVI__CELL_AHEAD);
+    const int returned = dvi__solid_act(avi, c, t);
+    if (returned != 0) return (dvi__solid_halt){returned, c, t};
+  }
+  return (dvi__solid_halt){0};
+}
+
+/* A process whose events have failed goes on to speak with the others, who do not know yet. What it
+ * says from then on counts for later times alone. */
 dvi__solid_halt dvi__solid_run_slots(dvi__solid_avi *avi, double limit)
 {
+  dvi__solid_halt halt = {0};
   for (;;) {
     const double t = dvi__solid_slot_time(avi, avi->clock.slot + 1);
-    if (!(t <= limit)) return (dvi__solid_halt){0};
-    const int64_t end = avi->class_end[dvi__solid_class_of_slot(avi, avi->clock.slot + 1)];
-    for (int64_t c = 0; c < end; c++) {
-      if (c + DVI__CELL_AHEAD < end) DVI__FETCH_CELL(avi->cell + c + DVI__CELL_AHEAD);
-      const int returned = dvi__solid_act(avi, c, t);
-      if (returned != 0) return (dvi__solid_halt){returned, c, t};
-    }
+    if (!(t <= limit) || avi->is_lost) return halt;
+    const int class = dvi__solid_class_of_slot(avi, avi->clock.slot + 1);
+    const dvi__solid_halt trade = dvi__solid_trade(avi, class, t);
+    if (halt.returned == 0) halt = trade.returned != 0 ? trade : run_slot(avi, class, t);
+    if (halt.returned != 0 && avi->borders == NULL) return halt;
     avi->clock.slot++;
-    avi->clock.events += end;
+    avi->clock.events += avi->class_events[class];
     avi->clock.t = fmax(avi->clock.t, t);
   }
 }

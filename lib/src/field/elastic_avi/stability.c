@@ -16,6 +16,7 @@
 #include "core/status.h"
 #include "field/elastic/rigid.h"
 #include "field/elastic_avi/march.h"
+#include "field/mesh/share.h"
 #include "field/step/classes.h"
 #include "field/step/growth.h"
 
@@ -271,6 +272,7 @@ dvi_status dvi_elastic_stability(const dvi_elastic *elastic, const dvi_march_opt
     return dvi__fail(DVI_BAD_ARGUMENT, "stability: a solid and a place for the report are needed");
   if (!(span >= 0) || isinf(span))
     return dvi__fail(DVI_BAD_ARGUMENT, "stability: the span is %g; 0 or more are possible", span);
+  DVI_TRY(dvi__refuse_share(elastic->mesh, "stability: a solid"));
   DVI_TRY(dvi__solid_ask(elastic, options, &request));
   if (request.is_equal)
     return dvi__fail(DVI_UNSUPPORTED, "stability: verlet has equal steps, which are stable below "

@@ -6,7 +6,8 @@
 #include "core/status.h"
 #include "field/elastic/cell.h"
 #include "field/elastic/contacts.h"
-#include "field/elastic_avi/plan.h"
+#include "field/elastic_avi/borders.h"
+#include "field/mesh/share.h"
 #include "field/step/decay.h"
 
 static const double roundings = 1e-12;
@@ -48,6 +49,18 @@ static dvi_status check_place(const dvi__solid_avi *avi, int64_t vertex, const d
 }
 
 /* Set the view to the start, with what is given, and find its energy. */
+static dvi_status check_nodes(const dvi__solid_avi *avi, double t)
+{
+  dvi__solid_view *view = avi->view;
+  for (int64_t v = 0; v < avi->vertices && !avi->is_linear; v++) {
+    const int returned = dvi__solid_given(avi->solid, v, t, view->u + v * avi->n,
+                                          view->rate + v * avi->n);
+    if (returned != 0) return dvi__solid_refuse_given(avi->solid, v, returned);
+    if (avi->node_kind[v] & DVI__NODE_MEETS) DVI_TRY(check_place(avi, v, view->u + v * avi->n));
+  }
+  return DVI_OK;
+}
+
 static dvi_status check(const dvi__solid_avi *avi, double t, const double *u, const double *rate)
 {
   dvi__solid_view *view = avi->view;
@@ -61,12 +74,9 @@ static dvi_status check(const dvi__solid_avi *avi, double t, const double *u, co
     memcpy(view->rate, rate, size);
   else
     memset(view->rate, 0, size);
-  for (int64_t v = 0; v < avi->vertices && !avi->is_linear; v++) {
-    const int returned = dvi__solid_given(avi->solid, v, t, view->u + v * avi->n,
-                                          view->rate + v * avi->n);
-    if (returned != 0) return dvi__solid_refuse_given(avi->solid, v, returned);
-    if (avi->node_kind[v] & DVI__NODE_MEETS) DVI_TRY(check_place(avi, v, view->u + v * avi->n));
-  }
+  DVI_TRY(dvi__solid_refresh(avi, view->u));
+  DVI_TRY(dvi__solid_refresh(avi, view->rate));
+  DVI_TRY(dvi__agree(avi->solid->mesh, check_nodes(avi, t)));
   DVI_TRY(dvi_elastic_energy(avi->solid, t, view->u, view->rate, NULL, &view->energies));
   if (isfinite(view->energies.kinetic + view->energies.stored + view->energies.load)) return DVI_OK;
   return dvi__fail(DVI_NOT_FINITE, "%s: the energy of the start is not finite", avi->method);
@@ -118,6 +128,15 @@ static int kick_first(dvi__solid_avi *avi, int64_t c, double t)
   return 0;
 }
 
+static dvi_status kick_all(dvi__solid_avi *avi, double t)
+{
+  for (int64_t c = 0; c < avi->active; c++) {
+    const int returned = kick_first(avi, c, t);
+    if (returned != 0) return dvi__solid_refuse(avi->solid, avi->cell[c].name, returned);
+  }
+  return DVI_OK;
+}
+
 dvi_status dvi__solid_avi_start(dvi__solid_avi *avi, double t, const double *u, const double *rate)
 {
   DVI_TRY(check(avi, t, u, rate));
@@ -128,11 +147,11 @@ dvi_status dvi__solid_avi_start(dvi__solid_avi *avi, double t, const double *u, 
                                   .start_energy = avi->view->energies.kinetic +
                                                   avi->view->energies.stored,
                                   .allowed = avi->band};
-  for (int64_t c = 0; c < avi->active; c++) {
-    const int returned = kick_first(avi, c, t);
-    if (returned == 0) continue;
+  dvi_status status = dvi__agree(avi->solid->mesh, kick_all(avi, t));
+  if (status == DVI_OK) status = dvi__solid_complete(avi);
+  if (status != DVI_OK) {
     dvi__solid_take_back(avi);
-    return dvi__solid_refuse(avi->solid, avi->cell[c].name, returned);
+    return status;
   }
   dvi__solid_keep(avi);
   dvi__solid_order(avi);

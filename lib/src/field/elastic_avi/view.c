@@ -14,7 +14,8 @@
 
 #include "core/status.h"
 #include "field/elastic/system.h"
-#include "field/elastic_avi/plan.h"
+#include "field/elastic_avi/borders.h"
+#include "field/mesh/share.h"
 #include "field/step/decay.h"
 
 /* The time of the last event of a cell. */
@@ -136,28 +137,41 @@ static dvi_status see_rests(const dvi__solid_avi *avi)
   return DVI_OK;
 }
 
-/* The energy of the start, and the sizes of all that loads and driven nodes worked. */
-static double reference_energy(const dvi__solid_avi *avi)
+/* Give the energy of the start, and the sizes of all that loads and driven nodes worked. */
+static dvi_status find_reference(const dvi__solid_avi *avi, double *reference)
 {
+  const dvi_mesh *mesh = avi->solid->mesh;
   const int n = avi->n;
-  double sum = avi->clock.start_energy;
-  for (int64_t c = 0; c < avi->active && avi->state.worked != NULL; c++)
-    sum += avi->state.worked[c];
-  for (int64_t v = 0; v < avi->vertices && avi->solid->is_driven; v++) {
+  dvi__block_sum sum = {.count = 0};
+  *reference = avi->clock.start_energy;
+  if (avi->state.worked == NULL) return DVI_OK;
+  for (int64_t v = 0; v < avi->vertices; v++) {
     dvi__solid_node now = avi->state.node[v];
+    if (!dvi__owns(mesh, 0, v)) continue;
+    dvi__block_sum_add(&sum, avi->state.worked[v]);
     const double before = dvi__solid_driven_energy(avi, v, &now);
     for (int i = 0; i < n; i++) now.v[i] = avi->view->rate[v * n + i];
-    sum += fabs(dvi__solid_driven_energy(avi, v, &now) - before);
+    const double change = dvi__solid_driven_energy(avi, v, &now) - before;
+    if (change != 0) dvi__block_sum_add(&sum, fabs(change));
   }
-  return sum;
+  DVI_TRY(dvi__sum_of_all(mesh, dvi__block_sum_end(&sum), reference));
+  *reference += avi->clock.start_energy;
+  return DVI_OK;
+}
+
+/* See what is here. Rates of other processes' nodes are not complete. */
+static dvi_status see_own(const dvi__solid_avi *avi)
+{
+  DVI_TRY(see_nodes(avi));
+  DVI_TRY(see_debts(avi));
+  return see_rests(avi);
 }
 
 dvi_status dvi__solid_avi_see(const dvi__solid_avi *avi)
 {
   avi->view->t = (double)NAN;
-  DVI_TRY(see_nodes(avi));
-  DVI_TRY(see_debts(avi));
-  return see_rests(avi);
+  DVI_TRY(dvi__agree(avi->solid->mesh, see_own(avi)));
+  return dvi__solid_refresh(avi, avi->view->rate);
 }
 
 dvi_status dvi__solid_avi_look(const dvi__solid_avi *avi)
@@ -166,28 +180,40 @@ dvi_status dvi__solid_avi_look(const dvi__solid_avi *avi)
   if (view->t == avi->clock.t) return DVI_OK;
   DVI_TRY(dvi__solid_avi_see(avi));
   DVI_TRY(dvi_elastic_energy(avi->solid, avi->clock.t, view->u, view->rate, NULL, &view->energies));
-  const double reference = reference_energy(avi);
+  double reference;
+  DVI_TRY(find_reference(avi, &reference));
   view->growth = reference > 0 ? (view->energies.kinetic + view->energies.stored) / reference : 1;
   view->t = avi->clock.t;
   return DVI_OK;
 }
 
-double dvi__solid_momentum(const dvi__solid_avi *avi, int k, double *size)
+dvi_status dvi__solid_momentum(const dvi__solid_avi *avi, int k, double *value, double *size)
 {
   const dvi_elastic *e = avi->solid;
   const int n = avi->n, is_turn = k >= n, i = n == 3 ? (k + 1) % 3 : 0,
             j = n == 3 ? (k + 2) % 3 : 1, is_small = dvi__solid_is_linear(e);
-  double sum = 0;
+  dvi__block_sum sum = {.count = 0};
   *size = 0;
   for (int64_t v = 0; v < avi->vertices; v++) {
+    if (!dvi__owns(e->mesh, 0, v)) continue;
     const double *u = avi->view->u + v * n, *X = e->point + v * n, *rate = avi->view->rate + v * n;
     const double xi = X[i] + (is_small ? 0 : u[i]), xj = X[j] + (is_small ? 0 : u[j]),
                  first = e->mass[v] * (is_turn ? xi * rate[j] : rate[k]),
                  second = e->mass[v] * (is_turn ? -xj * rate[i] : 0);
-    sum += first + second;
+    dvi__block_sum_add(&sum, first + second);
     *size += fabs(first) + fabs(second);
   }
-  return sum;
+  return dvi__sum_of_all(e->mesh, dvi__block_sum_end(&sum), value);
+}
+
+/* Refuse single components of other processes' nodes, for whose rates cells may be missing. */
+static dvi_status check_owners(const dvi__solid_avi *avi, int64_t count, const int *component)
+{
+  for (int64_t i = 0; i < count && component != NULL; i++) {
+    const int vertex = component[i] / avi->n;
+    DVI_TRY(dvi__check_owned(avi->solid->mesh, 0, 1, &vertex));
+  }
+  return DVI_OK;
 }
 
 /* A few values are computed by themselves, with the same bits. */
@@ -195,8 +221,9 @@ dvi_status dvi__solid_avi_sample(const dvi__solid_avi *avi, int64_t count, const
                                  double *u, double *rate)
 {
   const int n = avi->n;
-  if (component == NULL) count = avi->vertices * n;
   if (component == NULL && rate != NULL) DVI_TRY(dvi__solid_avi_look(avi));
+  DVI_TRY(check_owners(avi, count, component));
+  if (component == NULL) count = avi->vertices * n;
   const int is_seen = avi->view->t == avi->clock.t;
   double rates[DVI__SOLID_AXES] = {0};
   dvi__solid_node node = {0};

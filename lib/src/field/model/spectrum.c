@@ -155,21 +155,6 @@ static dvi_status refresh_unknowns(void *of, double *x)
   return DVI_OK;
 }
 
-static dvi_status sum_up(void *of, dvi__accumulator *sum, double *value)
-{
-  return dvi__sum_of_all(((const unknowns *)of)->field->mesh, sum, value);
-}
-
-static dvi_status find_largest(void *of, double *value)
-{
-  return dvi__largest_of_all(((const unknowns *)of)->field->mesh, 1, value);
-}
-
-static dvi_status agree(void *of, dvi_status status)
-{
-  return dvi__agree(((const unknowns *)of)->field->mesh, status);
-}
-
 static dvi_status prepare_unknowns(const dvi_field *f, unknowns *u)
 {
   *u = (unknowns){.field = f,
@@ -197,10 +182,11 @@ static dvi_status find_fastest(const dvi_field *field, double *bound)
                           .number = u.number,
                           .is_own = u.is_own,
                           .refresh = refresh_unknowns,
-                          .sum = sum_up,
-                          .largest = find_largest,
-                          .agree = agree,
-                          .of = &u};
+                          .sum = dvi__rows_sum,
+                          .largest = dvi__rows_largest,
+                          .agree = dvi__rows_agree,
+                          .of = &u,
+                          .all = field->mesh};
   if (status == DVI_OK) status = dvi__largest_eigenvalue(&pencil, &rows, bound);
   dvi__release(u.number);
   dvi__release(u.is_own);

@@ -22,56 +22,17 @@
 #include "core/status.h"
 #include "field/algebra/conjugate.h"
 #include "field/mesh/share.h"
+#include "field/step/leapfrog_state.h"
 #include "field/step/observables.h"
 #include "field/step/saved.h"
 #include "field/step/source.h"
 #include "field/step/sweep.h"
 #include "field/step/terms.h"
 
-/* What identifies a march in a file, and where it stands. */
-typedef struct place {
-  int64_t n;
-  uint64_t hash; /* of the coefficients */
-  double dt, t0, t;
-} place;
-
-/* What stars that are not diagonal need: the matrix M + dt/2 S of a step, M, and room. */
-typedef struct solver {
-  dvi_matrix d, M2, matrix, mass;
-  dvi__csr left; /* what `matrix` shows */
-  dvi__products of_step, of_mass;
-  double *room;      /* of all that follows */
-  double *H, *curl;  /* [faces], [cells] */
-  double *right, *x; /* [unknowns] */
-  double *kept;      /* [numbers] the state before a step */
-} solver;
-
-typedef struct leapfrog {
-  const dvi_field *field;
-  dvi__sweep sweep;
-  place at;
-  double bound;
-  int keeps_A; /* the field is a wave, A is wanted, or damping moves charge */
-  int64_t numbers;
-  double *state;       /* [numbers] all that follows in this block, and the charge's numbers */
-  double *E, *H, *A;   /* E^{n+1/2}, B^n as field/step/sweep.h has it, A^n if it is kept */
-  double *J;           /* [currents] means of the signals around t_n, or after t_0 */
-  double *impulse;     /* [currents] integrals of the signals over the next step */
-  double *keep, *gain; /* [cells] coefficients of diagonal stars; keep is NULL for 1 */
-  double *inverse;     /* [unknowns] 1/(M + dt/2 S) of diagonal stars */
-  double *source;      /* [unknowns] of a wave, or NULL */
-  double *spare;       /* [cells + 2*faces] */
-  double *change;      /* [cells] of stars that are not diagonal, E' at t_n once it is needed */
-  int64_t changed;     /* that n, or -1 */
-  int is_lost;         /* processes could not give each other their values */
-  dvi__charge charge;
-  solver solver;
-} leapfrog;
-
 /* ---- right sides ---- */
 
 /* Give what currents and a wave's source add at the unknown i. Both push A, and E = -A'. */
-static double push(const leapfrog *l, int64_t i)
+static double push(const dvi__leapfrog *l, int64_t i)
 {
   double sum = l->source != NULL ? -l->source[i] : 0;
   for (int c = 0; c < l->field->currents; c++) {
@@ -83,23 +44,23 @@ static double push(const leapfrog *l, int64_t i)
 }
 
 /* Give a row of S E. */
-static double damp(const leapfrog *l, int64_t i)
+static double damp(const dvi__leapfrog *l, int64_t i)
 {
   const dvi_field *f = l->field;
   return f->damping.rows > 0 ? dvi__field_row(f, &f->damping, i, l->E) : 0;
 }
 
 /* Give the unknown i of d^T M_{k+1} B - J - S E, with a diagonal star. */
-static double force(const leapfrog *l, int64_t i)
+static double force(const dvi__leapfrog *l, int64_t i)
 {
   return dvi__sweep_curl(&l->sweep, l->field->unknown[i], l->H) + push(l, i) - damp(l, i);
 }
 
 /* Set right [unknowns] to it with another star. */
-static void find_right(const leapfrog *l, double factor)
+static void find_right(const dvi__leapfrog *l, double factor)
 {
   const dvi_field *f = l->field;
-  const solver *s = &l->solver;
+  const dvi__leapfrog_solver *s = &l->solver;
   const double *H = l->sweep.is_diagonal ? l->H : s->H; /* n-forms are diagonal, and above 0 */
   if (!l->sweep.is_diagonal) dvi_matrix_multiply(&s->M2, 0, l->H, s->H);
   dvi_matrix_multiply(&s->d, 1, H, s->curl);
@@ -113,19 +74,19 @@ static void find_right(const leapfrog *l, double factor)
 /* ---- stars that are not diagonal ---- */
 
 /* Set x to A^-1 right, with the matrix A = M + dt/2 S of a step, or A = M. */
-static dvi_status solve(const leapfrog *l, const dvi__products *A)
+static dvi_status solve(const dvi__leapfrog *l, const dvi__products *A)
 {
   return dvi__conjugate_gradients(A, 1e-15, l->solver.right, l->solver.x, NULL);
 }
 
 /* ---- a step ---- */
 
-static double time_of(const leapfrog *l, int64_t n)
+static double time_of(const dvi__leapfrog *l, int64_t n)
 {
   return l->at.t0 + (double)n * l->at.dt;
 }
 
-static void drift(leapfrog *l)
+static void drift(dvi__leapfrog *l)
 {
   const double dt = l->at.dt;
   dvi__sweep_H(&l->sweep, dt, l->E, l->H);
@@ -136,7 +97,7 @@ static void drift(leapfrog *l)
   }
 }
 
-static dvi_status kick(leapfrog *l)
+static dvi_status kick(dvi__leapfrog *l)
 {
   const dvi_field *f = l->field;
   dvi__sweep_E(&l->sweep, l->keep, l->gain, l->H, l->E);
@@ -152,7 +113,7 @@ static dvi_status kick(leapfrog *l)
   return dvi__refresh(f->mesh, f->degree, l->E);
 }
 
-static dvi_status kick_by_solution(leapfrog *l)
+static dvi_status kick_by_solution(dvi__leapfrog *l)
 {
   const dvi_field *f = l->field;
   find_right(l, l->at.dt);
@@ -162,7 +123,7 @@ static dvi_status kick_by_solution(leapfrog *l)
 }
 
 /* Integrate the signals over the step, before anything changes. */
-static dvi_status find_impulses(leapfrog *l)
+static dvi_status find_impulses(dvi__leapfrog *l)
 {
   const dvi_field *f = l->field;
   if (f->currents == 0) return DVI_OK;
@@ -171,7 +132,7 @@ static dvi_status find_impulses(leapfrog *l)
 }
 
 /* A solution that fails leaves the state as it was. Values that do not arrive leave none. */
-static dvi_status step(leapfrog *l)
+static dvi_status step(dvi__leapfrog *l)
 {
   dvi_status status = DVI_OK;
   DVI_TRY(find_impulses(l));
@@ -190,7 +151,7 @@ static dvi_status step(leapfrog *l)
 
 static dvi_status advance(void *self, double t)
 {
-  leapfrog *l = self;
+  dvi__leapfrog *l = self;
   const double rounding = 8 * DBL_EPSILON * fmax(fabs(t), fabs(l->at.t0));
   while (time_of(l, l->at.n + 1) <= t + rounding) {
     const dvi_status status = step(l);
@@ -205,7 +166,7 @@ static dvi_status advance(void *self, double t)
 /* ---- a start ---- */
 
 /* Take what is given, of each cell by its owner, and B = dA otherwise. */
-static dvi_status take(leapfrog *l, const dvi_march_state *state)
+static dvi_status take(dvi__leapfrog *l, const dvi_march_state *state)
 {
   const dvi_field *f = l->field;
   double *A = l->A != NULL ? l->A : l->spare, *B = l->spare + f->cells;
@@ -226,7 +187,7 @@ static dvi_status take(leapfrog *l, const dvi_march_state *state)
 }
 
 /* Set E^{1/2} = E^0 + dt/2 M^-1 (d^T M_{k+1} B^0 - J^0 - S E^{1/2}). */
-static dvi_status half_kick(leapfrog *l)
+static dvi_status half_kick(dvi__leapfrog *l)
 {
   const dvi_field *f = l->field;
   const double half = l->at.dt / 2;
@@ -254,7 +215,7 @@ static int moves_charge(const dvi_field *field)
 
 /* Give the integral of E up to t_{n+1/2}, or NULL without damping: S times its change is the charge
  * that moved, as the trapezoids (E^{n-1/2} + E^{n+1/2}) dt/2 of the steps add up to it. */
-static const double *integral_of_E(const leapfrog *l)
+static const double *integral_of_E(const dvi__leapfrog *l)
 {
   if (!moves_charge(l->field)) return NULL;
   for (int64_t c = 0; c < l->field->cells; c++) l->spare[c] = l->at.dt / 2 * l->E[c] - l->A[c];
@@ -263,8 +224,8 @@ static const double *integral_of_E(const leapfrog *l)
 
 static dvi_status start(void *self, const dvi_march_state *state)
 {
-  leapfrog *l = self;
-  const place before = l->at;
+  dvi__leapfrog *l = self;
+  const dvi__leapfrog_place before = l->at;
   l->at.t0 = l->at.t = state->t;
   l->at.n = 0;
   dvi_status status = dvi__agree(
@@ -287,18 +248,18 @@ static dvi_status start(void *self, const dvi_march_state *state)
 
 static double time(const void *self)
 {
-  return ((const leapfrog *)self)->at.t;
+  return ((const dvi__leapfrog *)self)->at.t;
 }
 
 static int64_t size(const void *self, dvi_march_form form)
 {
-  const leapfrog *l = self;
+  const dvi__leapfrog *l = self;
   if (form == DVI_FORM_A && l->A == NULL) return 0;
   return form == DVI_FORM_B ? l->sweep.faces : l->sweep.cells;
 }
 
 /* Find E' at t_n of a star that is not diagonal, M E' = d^T M_{k+1} B^n - J^n - S E^{n+1/2}. */
-static dvi_status find_change(leapfrog *l)
+static dvi_status find_change(dvi__leapfrog *l)
 {
   if (l->gain != NULL || l->changed == l->at.n) return DVI_OK;
   find_right(l, 1);
@@ -310,7 +271,7 @@ static dvi_status find_change(leapfrog *l)
 
 /* Give E at a time after t_n: E^{n+1/2} and its rate at t_n. At t_0 this is the start, and without
  * losses it is at t_n the mean of E^{n-1/2} and E^{n+1/2}. */
-static double E_after(const leapfrog *l, double after, int64_t cell)
+static double E_after(const dvi__leapfrog *l, double after, int64_t cell)
 {
   const int i = l->field->number[cell];
   if (i < 0) return 0;
@@ -318,7 +279,7 @@ static double E_after(const leapfrog *l, double after, int64_t cell)
   return l->E[cell] + (after - l->at.dt / 2) * rate;
 }
 
-static double B_after(const leapfrog *l, double after, int64_t face)
+static double B_after(const dvi__leapfrog *l, double after, int64_t face)
 {
   return l->H[face] / l->sweep.weight[face] - after * dvi__sweep_d(&l->sweep, face, l->E);
 }
@@ -326,9 +287,9 @@ static double B_after(const leapfrog *l, double after, int64_t face)
 static dvi_status sample(const void *self, dvi_march_form form, int64_t count, const int *cell,
                          double *values)
 {
-  const leapfrog *l = self;
+  const dvi__leapfrog *l = self;
   const double after = l->at.t - time_of(l, l->at.n);
-  if (form == DVI_FORM_E) DVI_TRY(find_change((leapfrog *)self));
+  if (form == DVI_FORM_E) DVI_TRY(find_change((dvi__leapfrog *)self));
   for (int64_t i = 0; i < count; i++) {
     const int64_t c = cell != NULL ? cell[i] : i;
     values[i] = form == DVI_FORM_A   ? l->A[c] - after * l->E[c]
@@ -342,7 +303,7 @@ static dvi_status sample(const void *self, dvi_march_form form, int64_t count, c
 static dvi_status show(const void *self, dvi_march_form form, int64_t count, const int *cell,
                        double *values)
 {
-  const leapfrog *l = self;
+  const dvi__leapfrog *l = self;
   if (form == DVI_FORM_E && cell != NULL)
     DVI_TRY(dvi__check_owned(l->field->mesh, l->field->degree, count, cell));
   DVI_TRY(sample(self, form, count, cell, values));
@@ -353,7 +314,7 @@ static dvi_status show(const void *self, dvi_march_form form, int64_t count, con
 /* E.M_k E/2 + B^n.M_{k+1} B^{n+1}/2 - source.(A^n + A^{n+1})/2 */
 static dvi_status energy(const void *self, double *value)
 {
-  const leapfrog *l = self;
+  const dvi__leapfrog *l = self;
   const dvi_field *f = l->field;
   double *next = l->spare, *product = l->spare + l->sweep.faces;
   dvi__block_sum sum = {.count = 0};
@@ -376,30 +337,30 @@ static dvi_status energy(const void *self, double *value)
 
 static dvi_status charge_error(const void *self, double *error)
 {
-  const leapfrog *l = self;
+  const dvi__leapfrog *l = self;
   return dvi__charge_error(&l->charge, l->E, integral_of_E(l), error);
 }
 
 static int observables(const void *self)
 {
-  return dvi__field_observables(((const leapfrog *)self)->field);
+  return dvi__field_observables(((const dvi__leapfrog *)self)->field);
 }
 
 static const char *observable(const void *self, int i)
 {
-  return dvi__field_observable(((const leapfrog *)self)->field, i);
+  return dvi__field_observable(((const dvi__leapfrog *)self)->field, i);
 }
 
 static dvi_status observe(const void *self, int i, double *value)
 {
   const dvi__observed march = {
       .sample = sample, .energy = energy, .charge_error = charge_error, .of = self};
-  return dvi__field_observe(((const leapfrog *)self)->field, &march, i, value);
+  return dvi__field_observe(((const dvi__leapfrog *)self)->field, &march, i, value);
 }
 
 static void facts(const void *self, dvi_march_facts *facts)
 {
-  const leapfrog *l = self;
+  const dvi__leapfrog *l = self;
   *facts = (dvi_march_facts){.step = l->at.dt,
                              .longest = l->at.dt,
                              .bound = l->bound,
@@ -408,86 +369,28 @@ static void facts(const void *self, dvi_march_facts *facts)
                                         dvi__whole_count(l->field->mesh, l->field->degree + 1)};
 }
 
-/* ---- files ---- */
-
-enum { VERSION = 2, PIECES = 5 };
-
-/* List the parts of the state in the order of make_state. */
-static void find_pieces(const leapfrog *l, dvi__piece piece[PIECES])
-{
-  const dvi_field *f = l->field;
-  const int64_t A = l->keeps_A ? f->cells : 0, currents = 2 * (int64_t)f->currents;
-  piece[0] = (dvi__piece){f->degree, f->cells, l->E};
-  piece[1] = (dvi__piece){f->degree + 1, l->sweep.faces, l->H};
-  piece[2] = (dvi__piece){f->degree, A, l->A};
-  piece[3] = (dvi__piece){-1, currents, l->J};
-  piece[4] = (dvi__piece){f->degree - 1, dvi__charge_numbers(f) - f->currents, l->charge.start};
-}
-
-static dvi_status save(const void *self, dvi__sections_writer *writer)
-{
-  const leapfrog *l = self;
-  dvi__piece piece[PIECES];
-  find_pieces(l, piece);
-  dvi__section_open(writer, "leapfrog", VERSION);
-  dvi__section_put(writer, &l->at, sizeof l->at);
-  dvi__section_open(writer, "forms", 1);
-  return dvi__pieces_put(l->field->mesh, PIECES, piece, writer);
-}
-
-/* Find what was saved, and refuse what another march has saved. */
-static dvi_status find_saved(const leapfrog *l, const dvi__sections *sections, int64_t numbers,
-                             place *at, dvi__section *forms)
-{
-  dvi__section found;
-  DVI_TRY(dvi__section_find(sections, "leapfrog", VERSION, sizeof *at, &found));
-  memcpy(at, found.content, sizeof *at);
-  if (at->hash != l->at.hash || at->dt != l->at.dt)
-    return dvi__fail(DVI_BAD_FILE,
-                     "march: %s is of another field, or of another step: it has dt = %.17g, and "
-                     "this march %.17g",
-                     sections->name, at->dt, l->at.dt);
-  return dvi__section_find(sections, "forms", 1, (size_t)numbers * sizeof(double), forms);
-}
-
-static dvi_status load(void *self, const dvi__sections *sections)
-{
-  leapfrog *l = self;
-  const dvi_mesh *mesh = l->field->mesh;
-  dvi__piece piece[PIECES];
-  dvi__section forms = {0};
-  place at;
-  find_pieces(l, piece);
-  const int64_t numbers = dvi__pieces_size(mesh, PIECES, piece);
-  DVI_TRY(dvi__agree(mesh, find_saved(l, sections, numbers, &at, &forms)));
-  DVI_TRY(dvi__check_same(mesh, sections->name, sections->size, sections->bytes));
-  l->at = at;
-  dvi__pieces_take(mesh, PIECES, piece, forms.content);
-  l->changed = -1;
-  l->is_lost = 0;
-  return DVI_OK;
-}
+/* ---- several processes ---- */
 
 static dvi_status agree(const void *self, dvi_status status)
 {
-  return dvi__agree(((const leapfrog *)self)->field->mesh, status);
+  return dvi__agree(((const dvi__leapfrog *)self)->field->mesh, status);
 }
 
 static int is_lost(const void *self)
 {
-  return ((const leapfrog *)self)->is_lost;
+  return ((const dvi__leapfrog *)self)->is_lost;
 }
 
 static int writes(const void *self)
 {
-  return dvi__is_first(((const leapfrog *)self)->field->mesh);
+  return dvi__is_first(((const dvi__leapfrog *)self)->field->mesh);
 }
 
 /* ---- create ---- */
 
 static void destroy(void *self)
 {
-  leapfrog *l = self;
+  dvi__leapfrog *l = self;
   if (l == NULL) return;
   double *const arrays[] = {l->state,  l->impulse, l->keep,        l->gain,  l->inverse,
                             l->source, l->spare,   l->solver.room, l->change};
@@ -499,7 +402,7 @@ static void destroy(void *self)
 }
 
 /* Lay the state out in one block. */
-static dvi_status make_state(leapfrog *l)
+static dvi_status make_state(dvi__leapfrog *l)
 {
   const dvi_field *f = l->field;
   const int64_t cells = f->cells, faces = l->sweep.faces, A = l->keeps_A ? cells : 0;
@@ -517,7 +420,7 @@ static dvi_status make_state(leapfrog *l)
   return dvi__charge_create(f, l->J + f->currents, &l->charge);
 }
 
-static dvi_status make_coefficients(leapfrog *l)
+static dvi_status make_coefficients(dvi__leapfrog *l)
 {
   const dvi_field *f = l->field;
   l->gain = DVI_NEW(double, f->cells);
@@ -530,10 +433,10 @@ static dvi_status make_coefficients(leapfrog *l)
 }
 
 /* Make the matrices of a step and the room of its solutions. */
-static dvi_status make_solver(leapfrog *l)
+static dvi_status make_solver(dvi__leapfrog *l)
 {
   const dvi_field *f = l->field;
-  solver *s = &l->solver;
+  dvi__leapfrog_solver *s = &l->solver;
   const int64_t n = f->unknowns, faces = l->sweep.faces;
   DVI_TRY(dvi_mesh_incidence(f->mesh, f->degree, &s->d));
   DVI_TRY(dvi_star_matrix(f->star, f->degree + 1, &s->M2));
@@ -555,7 +458,7 @@ static dvi_status make_solver(leapfrog *l)
 }
 
 /* Make what a process has by itself. */
-static dvi_status make_own(leapfrog *l, int threads)
+static dvi_status make_own(dvi__leapfrog *l, int threads)
 {
   const dvi_field *f = l->field;
   DVI_TRY(dvi__sweep_create(f, threads, &l->sweep));
@@ -565,7 +468,7 @@ static dvi_status make_own(leapfrog *l, int threads)
   return make_solver(l);
 }
 
-static dvi_status make(leapfrog *l, int threads)
+static dvi_status make(dvi__leapfrog *l, int threads)
 {
   const dvi_field *f = l->field;
   DVI_TRY(dvi__agree(f->mesh, make_own(l, threads)));
@@ -586,8 +489,8 @@ static const dvi__march_kind kind = {
     .observable = observable,
     .observe = observe,
     .facts = facts,
-    .save = save,
-    .load = load,
+    .save = dvi__leapfrog_save,
+    .load = dvi__leapfrog_load,
     .agree = agree,
     .writes = writes,
     .is_lost = is_lost,
@@ -599,7 +502,7 @@ dvi_status dvi__leapfrog_create(const dvi_field *field, const dvi__march_plan *p
   double dt, bound;
   DVI_TRY(dvi__refuse_options(kind.name, plan));
   DVI_TRY(dvi__choose_step(field, plan, &dt, &bound));
-  leapfrog *l = DVI_NEW(leapfrog, 1);
+  dvi__leapfrog *l = DVI_NEW(dvi__leapfrog, 1);
   dvi_status status = dvi__agree(field->mesh,
                                  l != NULL ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "march: no memory"));
   if (status == DVI_OK) {

@@ -103,9 +103,8 @@ static uint64_t hash_unknown(const dvi_field *f, int64_t i)
   return hash;
 }
 
-/* Replace a number by the sum of all processes' numbers modulo 2^64, whose halves do not
- * overflow. */
-static dvi_status sum_modulo(const dvi_mesh *mesh, uint64_t *number)
+/* The halves do not overflow. */
+dvi_status dvi__sum_modulo(const dvi_mesh *mesh, uint64_t *number)
 {
   int64_t half[2] = {(int64_t)(*number & UINT32_MAX), (int64_t)(*number >> 32)};
   DVI_TRY(dvi__count_all(mesh, 2, half));
@@ -121,7 +120,7 @@ dvi_status dvi__field_hash(const dvi_field *field, uint64_t *hash)
   uint64_t sum = 0;
   for (int64_t i = 0; i < f->unknowns; i++)
     if (dvi__owns(f->mesh, f->degree, f->unknown[i])) sum += hash_unknown(f, i);
-  DVI_TRY(sum_modulo(f->mesh, &sum));
+  DVI_TRY(dvi__sum_modulo(f->mesh, &sum));
   *hash = dvi__hash(dvi__hash(DVI__HASH_START, sizeof head, head), sizeof sum, &sum);
   return DVI_OK;
 }
@@ -132,7 +131,7 @@ dvi_status dvi__check_same(const dvi_mesh *mesh, const char *name, size_t size,
   if (mesh->share == NULL) return DVI_OK;
   const uint64_t here = dvi__hash(DVI__HASH_START, size, content);
   uint64_t all = here;
-  DVI_TRY(sum_modulo(mesh, &all));
+  DVI_TRY(dvi__sum_modulo(mesh, &all));
   return dvi__agree(
       mesh, all == here * (uint64_t)mesh->share->ranks.count
                 ? DVI_OK

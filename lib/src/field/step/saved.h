@@ -28,6 +28,9 @@ void dvi__pieces_take(const dvi_mesh *mesh, int pieces, const dvi__piece *piece,
  * same for all divisions of the mesh. Called on all processes. */
 dvi_status dvi__field_hash(const dvi_field *field, uint64_t *hash);
 
+/* Replace a number by the sum of all processes' numbers modulo 2^64. */
+dvi_status dvi__sum_modulo(const dvi_mesh *mesh, uint64_t *number);
+
 /* Refuse sections of which the processes have different ones. Called on all of them. */
 dvi_status dvi__check_same(const dvi_mesh *mesh, const char *name, size_t size,
                            const unsigned char *content);

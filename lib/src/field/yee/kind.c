@@ -158,6 +158,12 @@ static void facts_of(const void *self, dvi_march_facts *facts)
   facts->updates = y->step * y->faces;
 }
 
+static int writes(const void *self)
+{
+  const dvi__yee *y = self;
+  return y->divided < 0 || y->own[y->divided][0] == 0;
+}
+
 static const dvi__march_kind yee_kind = {.name = "yee",
                                          .destroy = destroy,
                                          .start = dvi__yee_start,
@@ -170,7 +176,9 @@ static const dvi__march_kind yee_kind = {.name = "yee",
                                          .observe = dvi__yee_observe,
                                          .facts = facts_of,
                                          .save = dvi__yee_save,
-                                         .load = dvi__yee_load};
+                                         .load = dvi__yee_load,
+                                         .agree = dvi__yee_agree_anew,
+                                         .writes = writes};
 
 dvi_status dvi_yee_create(const dvi_yee_terms *terms, dvi_march **march)
 {

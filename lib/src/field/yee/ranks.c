@@ -5,7 +5,12 @@
  * is E of the first nodes behind. A step takes B of the last own boxes first and gives it on, as
  * on an axis that repeats itself, and gives on E of the first nodes when it is done. So all values
  * come from the same operations as on one process. Sums over all processes are exact until they
- * are rounded once (num/accumulator.h). */
+ * are rounded once (num/accumulator.h).
+ *
+ * Where several steps go together, a process has as many planes of its neighbours, the ghosts.
+ * Before the steps these come from their owners, once, and the process updates them along with its
+ * own ones, one plane less on each side in each step, from the same values by the same
+ * operations. */
 #include <string.h>
 
 #include "core/memory.h"
@@ -15,13 +20,22 @@
 struct dvi__yee_planes {
   dvi_yee_ranks ranks;
   int failed;                       /* what a function returned, 0 for success */
+  int filled;                       /* ghosts that are as their owners have them, on each side */
+  int has_layers;                   /* ghosts of some process are in layers across them */
   size_t across;                    /* rows of a plane */
+  size_t sums;                      /* numbers of layers in a plane */
   double *sent, *received, *moment; /* [copies*3*across*width], the last for a moment */
 };
 
 static const char name[] = "xyz";
 
 /* ---- division ---- */
+
+/* Give the first box of a process. */
+static int first_box(int cells, int rank, int count)
+{
+  return (int)((int64_t)cells * rank / count);
+}
 
 static dvi_status check_ranks(const dvi_yee_ranks *r)
 {
@@ -44,9 +58,8 @@ dvi_status dvi__yee_divide(const dvi_yee_terms *terms, dvi__yee *y)
     y->own[l][0] = 0;
     y->own[l][1] = y->axis[l].nodes;
   }
-  if (r == NULL) return DVI_OK;
-  DVI_TRY(check_ranks(r));
-  if (r->count == 1) return DVI_OK;
+  if (r != NULL) DVI_TRY(check_ranks(r));
+  if (r == NULL || r->count == 1) return dvi__yee_choose_together(y, terms, 1);
   if (last == 0)
     return dvi__fail(DVI_UNSUPPORTED,
                      "yee: a grid of one axis cannot be divided among %d processes; run it on one",
@@ -55,9 +68,13 @@ dvi_status dvi__yee_divide(const dvi_yee_terms *terms, dvi__yee *y)
     return dvi__fail(DVI_BAD_ARGUMENT,
                      "yee: axis %c has %d boxes, and %d processes need 2 each; run fewer processes",
                      name[last], cells, r->count);
+  DVI_TRY(dvi__yee_choose_together(y, terms, r->count));
   y->divided = last;
-  y->own[last][0] = (int)((int64_t)cells * r->rank / r->count);
-  if (r->rank < r->count - 1) y->own[last][1] = (int)((int64_t)cells * (r->rank + 1) / r->count);
+  y->own[last][0] = first_box(cells, r->rank, r->count);
+  if (r->rank < r->count - 1) y->own[last][1] = first_box(cells, r->rank + 1, r->count);
+  const int ghosts = y->together > 1 ? y->together : 0, around = y->axis[last].wraps;
+  y->ghosts[0] = r->rank > 0 || around ? ghosts : 0;
+  y->ghosts[1] = r->rank < r->count - 1 || around ? ghosts : 0;
   return DVI_OK;
 }
 
@@ -67,14 +84,41 @@ static size_t count_numbers(const dvi__yee *y)
   return (size_t)y->copies * 3 * across * y->width;
 }
 
+/* Tell if layers along the divided axis reach to ghosts of any process. */
+static int reach_to_ghosts(const dvi__yee *y, const dvi_yee_ranks *r)
+{
+  const dvi__yee_axis *a = &y->axis[y->divided];
+  for (int rank = 1; rank < r->count; rank++)
+    for (int e = 0; e < 2; e++) {
+      const int first = first_box(a->cells, rank, r->count), begin = a->layers[e].first;
+      if (begin < first + y->together && begin + a->layers[e].count > first - y->together) return 1;
+    }
+  return 0;
+}
+
+/* Count the numbers of sums of layers that a plane of ghosts has at most. */
+static size_t count_sums(const dvi__yee *y, const dvi__yee_planes *p)
+{
+  size_t sums = p->has_layers ? p->across * y->width : 0;
+  for (int e = 0; e < 2; e++) {
+    sums += p->across * (size_t)y->axis[0].layers[e].width;
+    if (y->divided == 2) sums += (size_t)y->axis[1].layers[e].count * y->width;
+  }
+  return DVI__YEE_DIFFERENCES * (size_t)y->copies * sums;
+}
+
 dvi_status dvi__yee_make_planes(const dvi_yee_terms *terms, dvi__yee *y)
 {
   if (y->divided < 0) return DVI_OK;
-  const size_t count = count_numbers(y);
+  size_t count = count_numbers(y);
   y->planes = DVI_NEW(dvi__yee_planes, 1);
   if (y->planes != NULL) {
     y->planes->ranks = *terms->ranks;
     y->planes->across = y->divided == 2 ? y->rows[0] : 1;
+    y->planes->has_layers = reach_to_ghosts(y, terms->ranks);
+    y->planes->sums = count_sums(y, y->planes);
+    if (y->together > 1 && count < (size_t)y->together * y->planes->sums)
+      count = (size_t)y->together * y->planes->sums;
     y->planes->sent = DVI_NEW(double, count);
     y->planes->received = DVI_NEW(double, count);
     y->planes->moment = DVI_NEW(double, count);
@@ -96,6 +140,11 @@ void dvi__yee_clear_planes(dvi__yee *y)
 
 /* ---- failures ---- */
 
+int dvi__yee_processes(const dvi__yee *y)
+{
+  return y->planes != NULL ? y->planes->ranks.count : 1;
+}
+
 dvi_status dvi__yee_check_ranks(const dvi__yee *y)
 {
   if (y->planes == NULL || y->planes->failed == 0) return DVI_OK;
@@ -104,23 +153,38 @@ dvi_status dvi__yee_check_ranks(const dvi__yee *y)
                    y->planes->ranks.rank, y->planes->ranks.count, y->planes->failed);
 }
 
-void dvi__yee_begin_ranks(const dvi__yee *y)
+int dvi__yee_begin_ranks(const dvi__yee *y)
 {
+  const int failed = y->planes != NULL ? y->planes->failed : 0;
   if (y->planes != NULL) y->planes->failed = 0;
+  return failed;
+}
+
+void dvi__yee_lose_ranks(const dvi__yee *y, int failure)
+{
+  if (failure != 0) y->planes->failed = failure;
 }
 
 dvi_status dvi__yee_agree(const dvi__yee *y, dvi_status status)
 {
-  double failed = status != DVI_OK;
+  double extreme[2] = {status, -(double)status}; /* failures have numbers above or below 0 */
   if (y->planes == NULL) return status;
-  dvi__yee_largest_of_all(y, 1, &failed);
-  if (status != DVI_OK) return status;
-  DVI_TRY(dvi__yee_check_ranks(y));
-  return failed == 0
-             ? DVI_OK
-             : dvi__fail(DVI_CALLBACK_FAILED,
-                         "yee: another one of %d processes failed, whose sentence tells why",
-                         y->planes->ranks.count);
+  dvi__yee_largest_of_all(y, 2, extreme);
+  const dvi_status reached = dvi__yee_check_ranks(y);
+  if (reached != DVI_OK) return status != DVI_OK ? status : reached;
+  const dvi_status agreed = (dvi_status)(extreme[1] > 0 ? -extreme[1] : extreme[0]);
+  if (status != DVI_OK || agreed == DVI_OK) return agreed;
+  return dvi__fail(agreed, "yee: another one of %d processes failed, whose sentence tells why",
+                   y->planes->ranks.count);
+}
+
+dvi_status dvi__yee_agree_anew(const void *self, dvi_status status)
+{
+  const dvi__yee *y = self;
+  const int lost = dvi__yee_begin_ranks(y);
+  status = dvi__yee_agree(y, status);
+  dvi__yee_lose_ranks(y, lost);
+  return status;
 }
 
 /* ---- sums ---- */
@@ -131,12 +195,25 @@ void dvi__yee_largest_of_all(const dvi__yee *y, int count, double *number)
   if (p != NULL && p->failed == 0) p->failed = p->ranks.largest(count, number, p->ranks.user);
 }
 
-double dvi__yee_sum_of_all(const dvi__yee *y, dvi__accumulator *sum)
+void dvi__yee_add_all(const dvi__yee *y, int count, int64_t *number)
 {
   dvi__yee_planes *p = y->planes;
-  if (p != NULL && p->failed == 0) {
+  if (p != NULL && p->failed == 0) p->failed = p->ranks.sum(count, number, p->ranks.user);
+}
+
+/* Halves of numbers do not overflow. */
+uint64_t dvi__yee_sum_modulo(const dvi__yee *y, uint64_t number)
+{
+  int64_t half[2] = {(int64_t)(number & UINT32_MAX), (int64_t)(number >> 32)};
+  dvi__yee_add_all(y, 2, half);
+  return (uint64_t)half[0] + ((uint64_t)half[1] << 32);
+}
+
+double dvi__yee_sum_of_all(const dvi__yee *y, dvi__accumulator *sum)
+{
+  if (y->planes != NULL) {
     dvi__accumulator_carry(sum);
-    p->failed = p->ranks.sum(DVI__SUM_NUMBERS, sum->number, p->ranks.user);
+    dvi__yee_add_all(y, DVI__SUM_NUMBERS, sum->number);
   }
   return dvi__accumulator_value(sum);
 }
@@ -212,6 +289,65 @@ void dvi__yee_pass_faces_back(const dvi__yee *y)
 {
   if (y->divided < 0) return;
   pass(y, DVI__YEE_B, 1, -1, dvi__yee_begin(y, y->divided), y->own[y->divided][1]);
+}
+
+/* ---- ghosts ---- */
+
+/* Copy sums of layers in a plane of ghosts, or one that others have as such, to a buffer or from
+ * it. */
+static void copy_sums(const dvi__yee *y, int plane, double *buffer, int takes)
+{
+  const int j = y->divided == 2 ? -1 : plane, k = y->divided == 2 ? plane : 0;
+  for (int axis = 0; axis < 3; axis++)
+    for (int e = 0; e < 2; e++) {
+      const dvi__yee_layers *l = &y->axis[axis].layers[e];
+      const int layer = axis == y->divided ? plane - l->first : 0;
+      if (l->count == 0 || layer < 0 || layer >= l->count) continue;
+      for (int copy = 0; copy < y->copies; copy++)
+        buffer += dvi__yee_copy_sums(y, axis, e, copy, layer, j, k, buffer, takes);
+    }
+}
+
+/* Give the numbers of planes from a place on, which are beside the own ones. */
+static double *planes_at(const dvi__yee *y, int copy, int place)
+{
+  const int l = y->divided, row = place - y->own[l][0] + dvi__yee_margin(y, l, 0);
+  return y->state[copy] + (size_t)row * y->planes->across * (size_t)y->components * y->width;
+}
+
+/* Give planes to a neighbour, from a place on, and receive those at another place. Where there is
+ * no neighbour nothing is sent, or received. */
+static void pass_ghosts(const dvi__yee *y, int way, int planes, int from, int to)
+{
+  dvi__yee_planes *p = y->planes;
+  const dvi_yee_ranks *r = &p->ranks;
+  const int around = y->axis[y->divided].wraps, sends = y->ghosts[way > 0] > 0,
+            receives = y->ghosts[way < 0] > 0;
+  const int64_t count = (int64_t)(p->across * (size_t)y->components * y->width) * planes,
+                sums = (int64_t)p->sums * planes;
+  for (int copy = 0; copy < y->copies && p->failed == 0; copy++)
+    p->failed = r->pass(way, around, count, planes_at(y, copy, from),
+                        receives ? planes_at(y, copy, to) : p->received, r->user);
+  if (sums == 0 || p->failed != 0) return;
+  for (int i = 0; i < planes && sends; i++)
+    copy_sums(y, dvi__yee_around(y, y->divided, from + i), p->sent + p->sums * (size_t)i, 0);
+  p->failed = r->pass(way, around, sums, p->sent, p->received, r->user);
+  for (int i = 0; i < planes && receives && p->failed == 0; i++)
+    copy_sums(y, dvi__yee_around(y, y->divided, to + i), p->received + p->sums * (size_t)i, 1);
+}
+
+void dvi__yee_fill_ghosts(const dvi__yee *y, int planes)
+{
+  if (y->ghosts[0] + y->ghosts[1] == 0 || y->planes->filled >= planes) return;
+  const int *own = y->own[y->divided];
+  pass_ghosts(y, 1, planes, own[1] - planes, own[0] - planes);
+  pass_ghosts(y, -1, planes, own[0], own[1]);
+  y->planes->filled = planes;
+}
+
+void dvi__yee_spoil_ghosts(const dvi__yee *y)
+{
+  if (y->planes != NULL) y->planes->filled = 0;
 }
 
 /* ---- other numbers of planes ---- */

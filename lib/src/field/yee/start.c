@@ -22,6 +22,7 @@ void dvi__yee_wrap_values(dvi__yee *y)
     for (int j = y->own[1][0]; j < y->own[1][1]; j++) dvi__yee_wrap_rows(y, j, k);
   dvi__yee_pass_edges(y);
   dvi__yee_pass_faces(y);
+  dvi__yee_spoil_ghosts(y);
 }
 
 /* Give no field to edges on conductors. */
@@ -74,19 +75,26 @@ static dvi_status make_charge(dvi__yee *y, int has_field)
                            : dvi__fail(DVI_NO_MEMORY, "yee: no memory for %zu charges", count);
 }
 
-static dvi_status prepare(dvi__yee *y, const dvi_march_state *state)
+static dvi_status prepare(dvi__yee *y, double t, int has_field)
 {
-  DVI_TRY(make_charge(y, state->E != NULL));
-  DVI_TRY(dvi__yee_start_sources(y, state->t));
-  return dvi__yee_ask_waves(y, state->t + 0.5 * y->dt);
+  DVI_TRY(make_charge(y, has_field));
+  DVI_TRY(dvi__yee_start_sources(y, t));
+  return dvi__yee_ask_waves(y, t + 0.5 * y->dt);
 }
 
-/* Memory and signals are asked for before anything changes. */
+/* Memory and signals are asked for before anything changes. A form has a start if one of the
+ * processes has it. */
 dvi_status dvi__yee_start(void *self, const dvi_march_state *state)
 {
   dvi__yee *y = self;
-  dvi__yee_begin_ranks(y);
-  DVI_TRY(dvi__yee_agree(y, prepare(y, state)));
+  const int lost = dvi__yee_begin_ranks(y);
+  double has[2] = {state->E != NULL, state->B != NULL};
+  dvi__yee_largest_of_all(y, 2, has);
+  const dvi_status status = dvi__yee_agree(y, prepare(y, state->t, has[0] > 0));
+  if (status != DVI_OK) {
+    dvi__yee_lose_ranks(y, lost);
+    return status;
+  }
   dvi__yee_start_waves(y);
   dvi__yee_restart_impulses(y);
   y->t0 = y->t = state->t;
@@ -95,10 +103,10 @@ dvi_status dvi__yee_start(void *self, const dvi_march_state *state)
   clear(y);
   set_values(y, DVI_FORM_E, state->E);
   set_values(y, DVI_FORM_B, state->B);
-  if (state->E != NULL) clear_conductors(y);
+  if (has[0] > 0) clear_conductors(y);
   dvi__yee_wrap_values(y);
   if (y->charge != NULL) dvi__yee_keep_charge(y);
-  take_half_step(y, state->B != NULL);
+  take_half_step(y, has[1] > 0);
   dvi__yee_wrap_values(y);
   return dvi__yee_check_ranks(y);
 }
