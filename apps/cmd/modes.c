@@ -92,7 +92,7 @@ static int find_shared(modes_request *r, const problem *scene, const dvi_field *
   double *eigenvalue = calloc((size_t)r->count, sizeof *eigenvalue);
   if (eigenvalue == NULL) complain("out of memory");
   int code = ranks_agree(eigenvalue != NULL ? DONE : FAILED);
-  if (code == DONE) {
+  if (code == DONE && eigenvalue != NULL) {
     if (!ranks_is_first()) r->csv = NULL;
     const dvi_status status = ranks_modes(field, &options, eigenvalue, &search);
     code = status == DVI_OK ? print_modes(r, scene, eigenvalue, &search) : library_error(status);

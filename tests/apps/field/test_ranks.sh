@@ -96,6 +96,15 @@ awk -F, 'NR > 1 { cells += $3
   END { exit !(NR == 4 && cells == 324 && !wrong) }' shares.csv ||
   wrong "explain: $(cat shares.csv)"
 
+# The table of modes is that of one process, but for the line about how they were found.
+"$dvi" modes box.yaml --count 3 >one.txt || wrong "dvi modes fails"
+if mpirun -np 2 "$dvi" modes box.yaml --count 3 >all.txt 2>err.txt; then
+  grep -q '^by 2 processes: ' all.txt || wrong "modes: $(cat all.txt)"
+  grep -v '^by 2 processes: ' all.txt | cmp - one.txt || wrong "two processes have other modes"
+else
+  grep -q '^dvi: .*SLEPc' err.txt || wrong "modes of two processes: $(cat err.txt)"
+fi
+
 # refused CODE WORDS ARGUMENT...: processes end with the code, and one sentence.
 refused() {
   code=$1 words=$2

@@ -1,6 +1,6 @@
 /* Modes of fields that processes share.
  *
- * Krylov and Schur's method (Stewart 2001), as SLEPc has it, finds those near a shift. Which modes
+ * Krylov and Schur's method (Stewart 2002), as SLEPc has it, finds those near a shift. Which modes
  * have the frequency zero is known, but for harmonic forms: constants of waves are kept away as
  * vectors to which all others are orthogonal, and gradients by a projection. */
 #include <dvi/forms.h>

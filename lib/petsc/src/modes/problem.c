@@ -103,7 +103,7 @@ static dvi_status gather_labels(const dvi_division *division, const double *labe
   *all = DVI_NEW(double, *count);
   DVI_TRY(dvi__world_agree(
       world, *all != NULL ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "modes: no memory for components")));
-  for (int64_t v = 0; v < dvi_mesh_count(division->share, 0); v++)
+  for (int64_t v = 0; *all != NULL && v < dvi_mesh_count(division->share, 0); v++)
     if (label[v] == (double)number[v] && owner[v] == world->rank) (*all)[next++] = label[v];
   /* the others' are 0, and a label is not below 0 */
   if (dvi__world_largest((int)*count, *all, (void *)world) != 0) return dvi__world_fail(world);
@@ -131,7 +131,7 @@ static dvi_status add_constants(dvi__modes_problem *p, const double *label)
   dvi_status status = gather_labels(p->division, label, &component, &count);
   if (status == DVI_OK)
     status = dvi__world_agree(&p->division->world, dvi__pairs_reserve((PetscInt)count, &p->pairs));
-  for (int64_t i = 0; i < count && status == DVI_OK; i++)
+  for (int64_t i = 0; component != NULL && i < count && status == DVI_OK; i++)
     status = dvi__check_petsc(add_constant(p, label, component[i]));
   p->constants = p->pairs.count;
   dvi__release(component);

@@ -44,13 +44,13 @@ dvi_status dvi__number_cells(const dvi_division *division, int k, const char *ch
   *n = (dvi__numbering){.number = DVI_NEW(PetscInt, cells), .cell = DVI_NEW(int, cells)};
   const int has_memory = form != NULL && n->number != NULL && n->cell != NULL;
   int64_t own = 0;
-  for (int64_t c = 0; c < cells && has_memory; c++)
+  for (int64_t c = 0; has_memory && c < cells; c++)
     if (chosen[c] && owner[c] == division->world.rank) n->cell[own++] = (int)c;
   dvi_status status = dvi__world_agree(
       &division->world,
       has_memory ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "petsc: no memory for numbers of unknowns"));
   if (status == DVI_OK) status = count_rows(&division->world, own, n);
-  if (status == DVI_OK) status = spread_numbers(division, k, form, n);
+  if (status == DVI_OK && has_memory) status = spread_numbers(division, k, form, n);
   dvi__release(form);
   if (status != DVI_OK) dvi__numbering_clear(n);
   return status;

@@ -6,6 +6,7 @@
 #ifndef DVI_PETSC_EIGEN_H
 #define DVI_PETSC_EIGEN_H
 #include "gradients.h"
+#include "pairs.h"
 
 typedef struct dvi__pencil_of_all {
   MPI_Comm comm;
@@ -18,27 +19,11 @@ typedef struct dvi__pencil_of_all {
   Vec room[2];               /* of unknowns */
 } dvi__pencil_of_all;
 
-/* Eigenpairs that have been found, in no order. */
-typedef struct dvi__pairs {
-  PetscInt count, room;
-  double *value, *residual; /* [room] lambda, and |K x - lambda M x| in the norm of M^-1 */
-  Vec *vector;              /* [room] y, of length 1 */
-} dvi__pairs;
-
-/* Make room for more pairs. All zero is an empty set. DVI_NO_MEMORY, which leaves it as it was. */
-dvi_status dvi__pairs_reserve(PetscInt more, dvi__pairs *pairs);
-
-void dvi__pairs_swap(PetscInt a, PetscInt b, dvi__pairs *pairs);
-
-/* Leave the first `count` pairs. */
-void dvi__pairs_shorten(PetscInt count, dvi__pairs *pairs);
-void dvi__pairs_clear(dvi__pairs *pairs);
-
 /* Add `count` pairs, the nearest to the shift among those that are orthogonal to the vectors in
  * `pairs`, which has room for them. All processes call it, and have the same pairs.
  *
- * DVI_SINGULAR if the shift is an eigenvalue, DVI_NOT_CONVERGED, DVI_NO_MEMORY, DVI_SOLVER_FAILED.
- */
+ * DVI_UNSUPPORTED without SLEPc, DVI_SINGULAR if the shift is an eigenvalue, DVI_NOT_CONVERGED,
+ * DVI_SOLVER_FAILED. */
 dvi_status dvi__find_pairs(const dvi__pencil_of_all *pencil, PetscInt count, dvi__pairs *pairs);
 
 /* Estimate how far from the shift the next pair is, to a hundredth. It returns likewise. */
