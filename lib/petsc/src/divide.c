@@ -18,11 +18,6 @@ static int refresh(int degree, double *values, void *user)
   return failed;
 }
 
-dvi_status dvi__division_refresh(const dvi_division *division, int k, double *values)
-{
-  return dvi__check_petsc((PetscErrorCode)refresh(k, values, (void *)division));
-}
-
 /* ---- star forests ---- */
 
 /* Own cells, or the others, of a degree of the share: their numbers in the whole mesh, and in the

@@ -16,7 +16,4 @@ struct dvi_division {
   dvi_division_facts facts;
 };
 
-/* Set the values [k-cells] of cells that others own to theirs. Called on all processes. */
-dvi_status dvi__division_refresh(const dvi_division *division, int k, double *values);
-
 #endif

@@ -116,7 +116,7 @@ void dvi_division_facts_of(const dvi_division *division, dvi_division_facts *fac
  *  @retval DVI_NOT_CONVERGED  an iteration did not converge
  *  @retval DVI_NO_MEMORY      there is no memory
  *  @retval DVI_SOLVER_FAILED  PETSc, SLEPc or MPI failed */
-dvi_status dvi_division_modes(const dvi_division *division, const dvi_field *field,
+dvi_status dvi_division_modes(dvi_division *division, const dvi_field *field,
                               const dvi_modes_options *options, double *eigenvalue, double *mode,
                               dvi_modes_facts *facts);
 

@@ -19,7 +19,7 @@ static dvi_status find_held(const dvi__edge_field *of, double *room, char *held)
   for (int64_t v = 0; v < vertices; v++) room[v] = 0;
   for (int64_t e = 0; e < d.rows; e++)
     for (int c = 0; c < 2 && of->unknowns->number[e] < 0; c++) room[d.column[2 * e + c]] = 1;
-  DVI_TRY(dvi__division_refresh(of->division, 0, room));
+  DVI_TRY(dvi_division_refresh(of->division, 0, room));
   for (int64_t v = 0; v < vertices; v++) held[v] = room[v] > 0;
   return DVI_OK;
 }

@@ -16,7 +16,7 @@ typedef struct dvi__gradients {
 
 /* What they are made for. */
 typedef struct dvi__edge_field {
-  const dvi_division *division;
+  dvi_division *division;
   const dvi__numbering *unknowns;
   Vec mass; /* the diagonal of M */
   int is_large;

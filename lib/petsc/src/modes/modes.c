@@ -261,7 +261,7 @@ static dvi_status find(modes *m, const dvi_modes_options *options, int count)
 
 /* Let the first entry of all that is at least half of the largest one be positive, so that equal
  * problems have equal modes. */
-static dvi_status choose_sign(const dvi_division *division, int k, int64_t cells, double *form)
+static dvi_status choose_sign(dvi_division *division, int k, int64_t cells, double *form)
 {
   void *world = (void *)&division->world;
   const int64_t *number = dvi_mesh_share_numbers(division->share, k);
@@ -296,7 +296,7 @@ static dvi_status give_mode(const dvi__modes_problem *p, Vec y, double *form)
   const int64_t cells = dvi_mesh_count(p->division->share, p->degree);
   memset(form, 0, (size_t)cells * sizeof *form);
   DVI_TRY(dvi__check_petsc(fill_form(p, y, form)));
-  DVI_TRY(dvi__division_refresh(p->division, p->degree, form));
+  DVI_TRY(dvi_division_refresh(p->division, p->degree, form));
   return choose_sign(p->division, p->degree, cells, form);
 }
 
@@ -327,7 +327,7 @@ static dvi_status give(const modes *m, int count, double *eigenvalue, double *mo
 
 /* ---- for users ---- */
 
-static dvi_status check(const dvi_division *division, const dvi_field *field,
+static dvi_status check(dvi_division *division, const dvi_field *field,
                         const dvi_modes_options *options, const double *eigenvalue)
 {
   if (division == NULL || field == NULL || eigenvalue == NULL)
@@ -354,7 +354,7 @@ dvi_status dvi__find_modes(const dvi__modes_request *r, double *eigenvalue, doub
   return status;
 }
 
-dvi_status dvi_division_modes(const dvi_division *division, const dvi_field *field,
+dvi_status dvi_division_modes(dvi_division *division, const dvi_field *field,
                               const dvi_modes_options *options, double *eigenvalue, double *mode,
                               dvi_modes_facts *facts)
 {

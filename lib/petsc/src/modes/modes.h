@@ -4,7 +4,7 @@
 #include "problem.h"
 
 typedef struct dvi__modes_request {
-  const dvi_division *division;
+  dvi_division *division;
   const dvi_field *field;
   const dvi_modes_options *options;
   int64_t most; /* unknowns of a mesh in space for a factor. More are iterated where they can be */

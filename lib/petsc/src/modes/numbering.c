@@ -24,19 +24,17 @@ static dvi_status count_rows(const dvi__world *world, int64_t own, dvi__numberin
 }
 
 /* Numbers of other processes' cells come from them. */
-static dvi_status spread_numbers(const dvi_division *division, int k, double *form,
-                                 dvi__numbering *n)
+static dvi_status spread_numbers(dvi_division *division, int k, double *form, dvi__numbering *n)
 {
   const int64_t cells = dvi_mesh_count(division->share, k);
   for (int64_t c = 0; c < cells; c++) form[c] = -1;
   for (PetscInt i = 0; i < n->own; i++) form[n->cell[i]] = (double)(n->first + i);
-  DVI_TRY(dvi__division_refresh(division, k, form));
+  DVI_TRY(dvi_division_refresh(division, k, form));
   for (int64_t c = 0; c < cells; c++) n->number[c] = (PetscInt)form[c];
   return DVI_OK;
 }
 
-dvi_status dvi__number_cells(const dvi_division *division, int k, const char *chosen,
-                             dvi__numbering *n)
+dvi_status dvi__number_cells(dvi_division *division, int k, const char *chosen, dvi__numbering *n)
 {
   const int64_t cells = dvi_mesh_count(division->share, k);
   const int *owner = dvi_mesh_share_owners(division->share, k);
@@ -95,8 +93,8 @@ static void fill_rows(const dvi__cell_matrix *part, rows *r)
   r->start[row] = entries;
 }
 
-static PetscErrorCode create(const dvi_division *division, const dvi__cell_matrix *part,
-                             const rows *r, Mat *all)
+static PetscErrorCode create(dvi_division *division, const dvi__cell_matrix *part, const rows *r,
+                             Mat *all)
 {
   PetscCall(MatCreate(division->world.comm, all));
   PetscCall(MatSetSizes(*all, part->rows->own, part->columns->own, part->rows->total,
@@ -107,7 +105,7 @@ static PetscErrorCode create(const dvi_division *division, const dvi__cell_matri
   return MatMPIAIJSetPreallocationCSR(*all, r->start, r->column, r->value);
 }
 
-dvi_status dvi__matrix_of_all(const dvi_division *division, const dvi__cell_matrix *part, Mat *all)
+dvi_status dvi__matrix_of_all(dvi_division *division, const dvi__cell_matrix *part, Mat *all)
 {
   const int64_t entries = dvi_matrix_entries(part->matrix);
   rows r = {.start = DVI_NEW(PetscInt, part->rows->own + 1),
@@ -148,7 +146,7 @@ static int level_labels(const dvi_matrix *edges, double *label)
   return has_changed;
 }
 
-dvi_status dvi__label_components(const dvi_division *division, const char *held, double *label)
+dvi_status dvi__label_components(dvi_division *division, const char *held, double *label)
 {
   const dvi_mesh *share = division->share;
   const int64_t *number = dvi_mesh_share_numbers(share, 0);
@@ -158,7 +156,7 @@ dvi_status dvi__label_components(const dvi_division *division, const char *held,
   for (int64_t v = 0; v < dvi_mesh_count(share, 0); v++)
     label[v] = held[v] ? -1 : (double)number[v];
   while (changed > 0) {
-    DVI_TRY(dvi__division_refresh(division, 0, label));
+    DVI_TRY(dvi_division_refresh(division, 0, label));
     changed = level_labels(&edges, label);
     if (dvi__world_largest(1, &changed, (void *)&division->world) != 0)
       return dvi__world_fail(&division->world);

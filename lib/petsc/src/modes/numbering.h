@@ -17,7 +17,7 @@ typedef struct dvi__numbering {
  * one does.
  *
  * DVI_BAD_SIZE if PetscInt cannot number them, DVI_NO_MEMORY, DVI_SOLVER_FAILED. */
-dvi_status dvi__number_cells(const dvi_division *division, int k, const char *chosen,
+dvi_status dvi__number_cells(dvi_division *division, int k, const char *chosen,
                              dvi__numbering *numbering);
 void dvi__numbering_clear(dvi__numbering *numbering);
 
@@ -30,10 +30,10 @@ typedef struct dvi__cell_matrix {
 
 /* Make the matrix of all processes from the rows of cells that this one owns. Rows and columns
  * without a number are left out. For MatDestroy. */
-dvi_status dvi__matrix_of_all(const dvi_division *division, const dvi__cell_matrix *part, Mat *all);
+dvi_status dvi__matrix_of_all(dvi_division *division, const dvi__cell_matrix *part, Mat *all);
 
 /* Label the vertices [vertices] of each component of the mesh: with the number in the whole mesh of
  * its first vertex, or with -1 if `held` is not 0 at one of its vertices. */
-dvi_status dvi__label_components(const dvi_division *division, const char *held, double *label);
+dvi_status dvi__label_components(dvi_division *division, const char *held, double *label);
 
 #endif

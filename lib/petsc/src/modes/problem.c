@@ -86,7 +86,7 @@ static PetscErrorCode find_sizes(dvi__modes_problem *p)
 /* ---- constants ---- */
 
 /* Give the labels [*count] of all components without a held vertex, for dvi__release. */
-static dvi_status gather_labels(const dvi_division *division, const double *label, double **all,
+static dvi_status gather_labels(dvi_division *division, const double *label, double **all,
                                 int64_t *count)
 {
   const dvi__world *world = &division->world;

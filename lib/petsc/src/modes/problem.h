@@ -4,7 +4,7 @@
 #include "eigen.h"
 
 typedef struct dvi__modes_problem {
-  const dvi_division *division;
+  dvi_division *division;
   const dvi_field *field;
   int64_t most; /* unknowns of a mesh in space for a factor */
   int degree;
