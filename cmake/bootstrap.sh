@@ -103,6 +103,14 @@ install_browser() {
   if apt-cache show $browser >/dev/null 2>&1; then install_packages $browser; fi
 }
 
+# Installs SLEPc where there is PETSc. Without it dvi finds no modes on several processes, and their
+# tests are skipped.
+install_slepc() {
+  if pkg-config --exists PETSc && apt-cache show slepc-dev >/dev/null 2>&1; then
+    install_packages slepc-dev
+  fi
+}
+
 # Prints the option for the component that is linked to PETSc and MPI: it is built, and tested with
 # four processes, where they are. libsundials-dev of Debian brings them along. Nothing installs them
 # for its sake.
@@ -186,6 +194,7 @@ lint() {
   install_packages "$lint_packages"
   install_browser
   status=0
+  install_slepc
   build lint "$(petsc_option)"
   run_tests lint || status=1
   build asan

@@ -13,6 +13,7 @@
 #include "load/elastic.h"
 #include "load/field.h"
 #include "load/open.h"
+#include "module/ranks.h"
 
 /* The options. */
 typedef struct modes_request {
@@ -23,8 +24,9 @@ typedef struct modes_request {
   words settings;
 } modes_request;
 
+/* Processes that share the field say how they have found the modes. */
 static int print_modes(const modes_request *r, const problem *scene, const double *eigenvalue,
-                       int64_t unknowns, int64_t zeros)
+                       const mode_search *search)
 {
   static const table_column columns[] = {
       {"index", "%.0f"}, {"eigenvalue", "%.12g"}, {"omega", "%.12g"}, {NULL, NULL}};
@@ -37,9 +39,13 @@ static int print_modes(const modes_request *r, const problem *scene, const doubl
   }
   bool good = table_good(rows);
   if (good) {
-    (void)fprintf(stream, "Modes of %s, of %lld unknowns", scene->name, (long long)unknowns);
+    (void)fprintf(stream, "Modes of %s, of %lld unknowns", scene->name,
+                  (long long)search->unknowns);
     if (!isnan(r->near)) (void)fprintf(stream, ", the nearest to %.12g", r->near);
-    (void)fprintf(stream, "\nleft out: %lld of frequency zero\n", (long long)zeros);
+    (void)fprintf(stream, "\nleft out: %lld of frequency zero\n", (long long)search->zeros);
+    if (search->solver != NULL)
+      (void)fprintf(stream, "by %d processes: %lld solutions by %s, residuals to %.1e\n",
+                    ranks_count(), (long long)search->solutions, search->solver, search->residual);
     table_print(rows, stream, 0, 0, table_rows(rows));
     good = r->csv == NULL || table_write(rows, r->csv);
   }
@@ -56,26 +62,57 @@ static int find_modes(const modes_request *r, const problem *scene, const dvi_fi
                                         : dvi_mesh_count(mesh, dvi_field_degree(field));
   const dvi_modes_options options = {
       .size = sizeof options, .count = (int)r->count, .shift = isnan(r->near) ? 0.0 : r->near};
-  int64_t zeros = 0, unknowns = 0;
+  mode_search search = {.solver = NULL};
   double *eigenvalue = calloc((size_t)r->count * (size_t)(1 + numbers), sizeof *eigenvalue);
   if (eigenvalue == NULL) {
     complain("out of memory");
     return FAILED;
   }
   double *mode = eigenvalue + r->count, *wanted = r->vtu != NULL ? mode : NULL;
-  const dvi_status status = solid != NULL
-                                ? dvi_elastic_modes(solid, &options, eigenvalue, wanted, &zeros)
-                                : dvi_field_modes(field, &options, eigenvalue, wanted, &zeros);
-  (void)(solid != NULL ? dvi_elastic_unknowns(solid, &unknowns)
-                       : dvi_field_unknowns(field, &unknowns));
-  int code = status == DVI_OK ? print_modes(r, scene, eigenvalue, unknowns, zeros)
-                              : library_error(status);
+  const dvi_status status =
+      solid != NULL ? dvi_elastic_modes(solid, &options, eigenvalue, wanted, &search.zeros)
+                    : dvi_field_modes(field, &options, eigenvalue, wanted, &search.zeros);
+  (void)(solid != NULL ? dvi_elastic_unknowns(solid, &search.unknowns)
+                       : dvi_field_unknowns(field, &search.unknowns));
+  int code = status == DVI_OK ? print_modes(r, scene, eigenvalue, &search) : library_error(status);
   if (status == DVI_BAD_SIZE) code = USAGE; /* more modes than there are */
   if (code == DONE && r->vtu != NULL)
     code = solid != NULL ? elastic_write_modes(scene, r->vtu, (int)r->count, mode)
                          : field_write(field, r->vtu, "mode", (int)r->count, mode);
   free(eigenvalue);
   return code;
+}
+
+/* The modes of a field that several processes share, of which the first one writes. */
+static int find_shared(modes_request *r, const problem *scene, const dvi_field *field)
+{
+  const dvi_modes_options options = {
+      .size = sizeof options, .count = (int)r->count, .shift = isnan(r->near) ? 0.0 : r->near};
+  mode_search search = {.solver = NULL};
+  double *eigenvalue = calloc((size_t)r->count, sizeof *eigenvalue);
+  if (eigenvalue == NULL) complain("out of memory");
+  int code = ranks_agree(eigenvalue != NULL ? DONE : FAILED);
+  if (code == DONE && eigenvalue != NULL) {
+    if (!ranks_is_first()) r->csv = NULL;
+    const dvi_status status = ranks_modes(field, &options, eigenvalue, &search);
+    code = status == DVI_OK ? print_modes(r, scene, eigenvalue, &search) : library_error(status);
+    if (status == DVI_BAD_SIZE || status == DVI_UNSUPPORTED) code = USAGE;
+  }
+  free(eigenvalue);
+  return code;
+}
+
+static int check_shared(const modes_request *r, const problem *scene)
+{
+  if (dvi_scene_field(scene->scene) == NULL)
+    return usage_error("modes: %d processes share a scene of waves or of Maxwell's field on a "
+                       "mesh, and %s is none; leave mpirun out",
+                       ranks_count(), scene->name);
+  if (r->vtu == NULL) return DONE;
+  return usage_error(
+      "modes: --vtu needs the whole mesh, which %d processes share; leave it out, or "
+      "mpirun",
+      ranks_count());
 }
 
 /* ---- fields with a density ---- */
@@ -253,7 +290,7 @@ static const command_line command = {
     .details = details,
 };
 
-int modes_command(int argc, char **argv)
+static int modes_alone(int argc, char **argv)
 {
   modes_request r = {.count = 6, .near = (double)NAN};
   const char *name;
@@ -268,13 +305,23 @@ int modes_command(int argc, char **argv)
   code = outputs_distinct("modes", 3, files);
   if (code != DONE) return code;
   code = open_any(name, &r.settings, &scene);
+  if (code == DONE && ranks_count() > 1 && (code = check_shared(&r, scene)) != DONE)
+    problem_destroy(&scene);
   if (code == DONE) code = field_choose("modes", name, &scene, &field, &density, &solid);
   if (code != DONE) return code;
   if (density == NULL && (r.at_static_state || r.shapes != NULL))
     code = usage_error("modes: --static and --shapes are for fields with a density");
+  else if (ranks_count() > 1)
+    code = find_shared(&r, scene, field);
   else
     code = density != NULL ? find_spectrum(&r, scene, density)
                            : find_modes(&r, scene, field, solid);
   problem_destroy(&scene);
   return code;
+}
+
+int modes_command(int argc, char **argv)
+{
+  const int code = ranks_begin();
+  return ranks_end(code == DONE ? modes_alone(argc, argv) : code);
 }

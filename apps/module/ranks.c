@@ -227,6 +227,12 @@ void ranks_tell(int rank, int degree, mesh_division *division)
   module->tell(rank, degree, division);
 }
 
+dvi_status ranks_modes(const dvi_field *field, const dvi_modes_options *options, double *eigenvalue,
+                       mode_search *search)
+{
+  return module->modes(field, options, eigenvalue, search);
+}
+
 /* ---- measurements among some of the processes ---- */
 
 bool ranks_among(int count)

@@ -50,6 +50,10 @@ int ranks_write_mesh(const dvi_mesh *mesh, const char *path);
 /** Give the share of process `rank`, of forms of a degree. Called by all processes. */
 void ranks_tell(int rank, int degree, mesh_division *division);
 
+/** Find modes of the field on this process's share, as dvi_field_modes does. Called by all. */
+dvi_status ranks_modes(const dvi_field *field, const dvi_modes_options *options, double *eigenvalue,
+                       mode_search *search);
+
 /* ---- measurements among some of the processes ---- */
 
 /** Let the first `count` processes work from now on: ranks_divide, ranks_tell and what follows is

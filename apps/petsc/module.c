@@ -93,6 +93,19 @@ static void tell(int rank, int degree, mesh_division *told)
                           .agreements = number[5]};
 }
 
+static dvi_status find_modes(const dvi_field *field, const dvi_modes_options *options,
+                             double *eigenvalue, mode_search *search)
+{
+  dvi_modes_facts facts = {.solver = ""};
+  const dvi_status status = dvi_division_modes(division, field, options, eigenvalue, NULL, &facts);
+  *search = (mode_search){.unknowns = facts.unknowns,
+                          .zeros = facts.zeros,
+                          .solver = facts.solver,
+                          .solutions = facts.solutions,
+                          .residual = facts.residual};
+  return status;
+}
+
 /* Wait until what is pending is met, for good or only for a while. */
 static bool is_met(bool has_failed)
 {
@@ -231,6 +244,7 @@ const petsc_module dvi_petsc = {
     .read = read_share,
     .write = dvi_mesh_write_divided,
     .tell = tell,
+    .modes = find_modes,
     .largest = largest,
     .meet = meet,
     .among = among,

@@ -4,7 +4,7 @@
  *  most runs, and only a command that loads them falls under the licence of Debian's PETSc. */
 #ifndef PETSC_MODULE_H
 #define PETSC_MODULE_H
-#include <dvi/mesh.h>
+#include <dvi/field.h>
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -17,6 +17,14 @@ typedef struct mesh_division {
   int neighbours;        /**< processes that own ghosts */
   int64_t agreements;    /**< of all processes so far */
 } mesh_division;
+
+/** What the modes of a divided field took. */
+typedef struct mode_search {
+  int64_t unknowns, zeros; /**< of the whole field, and its modes of frequency zero */
+  const char *solver;      /**< of the equations in the iteration */
+  int64_t solutions;       /**< of these */
+  double residual;         /**< the largest one, beside the eigenvalue */
+} mode_search;
 
 /** What a process has at its end. */
 typedef struct rank_end {
@@ -50,6 +58,10 @@ typedef struct petsc_module {
   /** Give the division of process `rank`, with the bytes that a form of a degree receives. Called
    *  by all processes. */
   void (*tell)(int rank, int degree, mesh_division *division);
+
+  /** Find the modes of a field on the share, as dvi_field_modes does. */
+  dvi_status (*modes)(const dvi_field *field, const dvi_modes_options *options, double *eigenvalue,
+                      mode_search *search);
 
   /** Find the largest of all processes' numbers. A process that has failed waits for the others for
    *  some seconds only, because they may wait for it elsewhere. Returns whether they have come. */

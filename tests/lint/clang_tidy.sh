@@ -44,13 +44,16 @@ trap 'rm -rf "$work"' EXIT
 mkdir -p "$build/analyzed"
 rc=0
 
-# Sources for PETSc are left out where it is not built.
+# Sources for PETSc, and the one for SLEPc, are left out where they are not built.
 grep -q '/lib/petsc/' "$build/compile_commands.json" && petsc=kept || petsc='*/petsc/*'
-find lib apps -name '*.c' ! -path "$petsc" | LC_ALL=C sort >"$work/sources"
+slepc='*/modes/eigen.c'
+grep -q '/modes/eigen\.c"' "$build/compile_commands.json" && slepc=kept
+find lib apps -name '*.c' ! -path "$petsc" ! -path "$slepc" | LC_ALL=C sort >"$work/sources"
 [ -s "$work/sources" ] || { echo "no sources"; exit 1; }
 
 # Each line of $work/parts names a source and its headers.
-xargs "$compiler" -MM -MG -I lib/include -I lib/petsc/include -I lib/src -I apps -I apps/problems \
+xargs "$compiler" -MM -MG -I lib/include -I lib/petsc/include -I lib/petsc/src -I lib/src \
+  -I apps -I apps/problems \
   <"$work/sources" 2>"$work/errors" |
   awk '{ rule = rule " " $0 }
     !/\\$/ {

@@ -133,7 +133,9 @@ function part_of_suitesparse(header) {
   return header ~ /^(suitesparse\/)?(klu|amd|colamd|btf|SuiteSparse_config)\.h$/
 }
 
-function part_of_mpi(header) { return header ~ /^(mpi|petsc[a-z]*)\.h$/ || header == "dvi/petsc.h" }
+function part_of_mpi(header) {
+  return header ~ /^(mpi|(petsc|slepc)[a-z]*)\.h$/ || header == "dvi/petsc.h"
+}
 
 # lib/petsc is the only component that is linked to PETSc and MPI.
 function check_component(quoted, header) {

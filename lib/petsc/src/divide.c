@@ -107,6 +107,7 @@ dvi_status dvi__division_join(dvi_division *division, const dvi_mesh *share, con
 {
   const int n = dvi_mesh_dimension(share);
   selections s = {0};
+  division->share = share;
   dvi_status status = dvi__world_agree(
       &division->world, dvi__check_petsc(select_all(share, division->world.rank, &s)));
   if (status == DVI_OK)

@@ -41,4 +41,14 @@ says err "several processes read 'torus.h5' in parts (mpirun -np 2 dvi run)" par
 "$dvi" run torus.yaml --columns energy,gauss,e --out one.csv || fail "torus.yaml: dvi run fails"
 by 3 parts.yaml --columns energy,gauss,e --out all.csv || fail "parts.yaml: 3 processes fail"
 same one.csv all.csv "3 processes read torus.h5"
+
+# The table of modes is that of one process, but for the line about how they were found.
+"$dvi" modes box.yaml --count 3 >one || fail "dvi modes fails"
+if mpirun -np 2 "$dvi" modes box.yaml --count 3 >all 2>err; then
+  says all '^by 2 processes: ' modes
+  grep -v '^by 2 processes: ' all >table
+  same one table "2 processes find modes"
+else
+  says err '^dvi: .*SLEPc' "modes of two processes"
+fi
 exit $((failures > 0))

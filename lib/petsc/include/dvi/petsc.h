@@ -9,6 +9,7 @@
  *  other without end otherwise. All processes of the communicator make the same calls. */
 #ifndef DVI_PETSC_H
 #define DVI_PETSC_H
+#include <dvi/field.h>
 #include <dvi/mesh.h>
 #include <dvi/yee.h>
 #include <mpi.h>
@@ -37,6 +38,18 @@ typedef struct dvi_division_facts {
   int neighbours;                               /**< processes that own ghosts */
   int64_t agreements; /**< so far, in which all processes have added or compared numbers */
 } dvi_division_facts;
+
+/** What the modes of a divided field took. */
+typedef struct dvi_modes_facts {
+  int64_t unknowns;   /**< of all processes */
+  int64_t zeros;      /**< zero eigenvalues, which are left out, as of dvi_field_modes */
+  const char *solver; /**< of the equations with K - shift M: "mumps" factors the matrix; "ams",
+                           "boomeramg" and "gamg" are multigrid methods in conjugate gradients */
+  int64_t solutions;  /**< of these equations */
+  int64_t iterations; /**< of conjugate gradients for them. 0 with a factor */
+  double residual;    /**< the largest |K x - lambda M x|/lambda, in the norm of M^-1. An eigenvalue
+                           is at most as far away, beside lambda */
+} dvi_modes_facts;
 
 #ifdef __cplusplus
 extern "C" {
@@ -108,6 +121,29 @@ dvi_status dvi_division_refresh(dvi_division *division, int degree, double *valu
 
 /** Give facts about the share of this process. */
 void dvi_division_facts_of(const dvi_division *division, dvi_division_facts *facts);
+
+/** Compute the modes of a field on this process's share, by SLEPc. They are those of
+ *  dvi_field_modes for the whole mesh, with the same options, to roundings. The last digits depend
+ *  on the number of processes.
+ *
+ *  @param field  on the share, or on one that has been shared. Its star is diagonal
+ *  @param options  the same on all processes. NULL for the defaults
+ *  @param[out] eigenvalue  [count] ascending, the same on all processes
+ *  @param[out] mode  [count][k-cells of the share] with x.M x = 1. May be NULL
+ *  @param[out] facts  may be NULL
+ *  If one process fails, all of them do, and only `mode` may have changed.
+ *
+ *  @retval DVI_UNSUPPORTED    there is no SLEPc, or no solver in PETSc, for it
+ *  @retval DVI_BAD_ARGUMENT   an argument is missing, the field is on another mesh, or the shift is
+ *                             not finite
+ *  @retval DVI_BAD_SIZE       count is not from 1 to the number of modes
+ *  @retval DVI_SINGULAR       K - shift M is singular, or M is not positive definite
+ *  @retval DVI_NOT_CONVERGED  an iteration did not converge
+ *  @retval DVI_NO_MEMORY      there is no memory
+ *  @retval DVI_SOLVER_FAILED  PETSc, SLEPc or MPI failed */
+dvi_status dvi_division_modes(dvi_division *division, const dvi_field *field,
+                              const dvi_modes_options *options, double *eigenvalue, double *mode,
+                              dvi_modes_facts *facts);
 
 /** Release the division before PetscFinalize, and set the pointer to NULL. NULL is allowed. */
 void dvi_division_destroy(dvi_division **division);
