@@ -166,8 +166,9 @@ typedef struct dvi_yee_terms {
   double span;
   int threads; /**< default 1. The bits do not depend on it */
   /** Steps that are taken together while their fields are in a cache. Axes y and z that repeat
-   *  themselves, and a divided grid, allow only 1. The bits do not depend on it. Default: as many
-   *  as pay */
+   *  themselves allow only 1, but for one without a phase that is divided. A divided grid allows as
+   *  many as each process has planes, and planes go to neighbours once for all of them. The bits do
+   *  not depend on it. Default: as many as pay */
   int together;
   const dvi_yee_ranks *ranks; /**< copied. Default: one process has the whole grid */
 } dvi_yee_terms;

@@ -150,6 +150,55 @@ START_TEST(a_failure_to_speak_is_told_until_a_start)
 }
 END_TEST
 
+/* ---- several steps together ---- */
+
+/* How often planes go in 8 steps, and in two looks at the energy thereafter. */
+typedef struct exchanges {
+  int together, passes[PROCESSES], looks[PROCESSES];
+} exchanges;
+
+static void count_exchanges(const dvi_yee_ranks *ranks, void *user)
+{
+  exchanges *e = user;
+  watched_ranks watched = {.ranks = ranks};
+  const dvi_yee_ranks watching = watch_ranks(&watched);
+  dvi_yee_terms terms = small;
+  terms.axis[1].cells = 12;
+  terms.ranks = &watching;
+  terms.together = e->together;
+  dvi_march *march = box_march(&terms);
+  double energy;
+  start_boxes(march, NULL, NULL);
+  watched.passes = 0;
+  (void)dvi_march_advance(march, 8.2 * step_of_march(march));
+  e->passes[ranks->rank] = watched.passes;
+  (void)dvi_march_observe(march, 0, &energy);
+  (void)dvi_march_observe(march, 0, &energy);
+  e->looks[ranks->rank] = watched.passes - e->passes[ranks->rank];
+  dvi_march_destroy(&march);
+}
+
+static void check_exchanges(int together, int passes, int looks)
+{
+  exchanges e = {.together = together};
+  run_box_ranks(3, count_exchanges, &e);
+  for (int r = 0; r < 3; r++) {
+    ck_assert_int_eq(e.passes[r], passes);
+    ck_assert_int_eq(e.looks[r], looks);
+  }
+}
+
+/* One in both directions for each block of steps, of which no more go together than there are
+ * planes, and one for what is looked at. */
+START_TEST(steps_that_go_together_exchange_planes_once)
+{
+  check_exchanges(1, 2 * 8, 0);
+  check_exchanges(2, 2 * 4, 2);
+  check_exchanges(4, 2 * 2, 2);
+  check_exchanges(16, 2 * 2, 2);
+}
+END_TEST
+
 /* ---- failures of one process ---- */
 
 /* A signal that fails after t = 2 where it is told so. */
@@ -177,6 +226,7 @@ static dvi_march *driven_march(const dvi_yee_ranks *ranks, int *fails)
                          .dipoles = 1,
                          .wave = &wave,
                          .waves = 1,
+                         .together = 2,
                          .ranks = ranks};
   dvi_march *march = NULL;
   if (dvi_yee_create(&terms, &march) == DVI_OK)
@@ -260,6 +310,7 @@ SUITE(yee_ranks)
   tcase_add_test(tests, one_process_needs_no_other);
   tcase_add_test(tests, places_are_those_of_the_whole_grid);
   tcase_add_test(tests, a_failure_to_speak_is_told_until_a_start);
+  tcase_add_test(tests, steps_that_go_together_exchange_planes_once);
   tcase_add_test(tests, a_signal_that_fails_on_one_process_loses_nothing);
   tcase_add_test(tests, memory_that_lacks_on_one_process_ends_all);
 }

@@ -41,6 +41,7 @@ static dvi_march *march_of(const dvi_yee_ranks *ranks, double conductivity)
                                         {.cells = 4, .upper = 4},
                                         {.cells = 11, .upper = 11, .end = {layers, layers}}},
                                .sigma.cell = sigma,
+                               .together = 3,
                                .dipole = &dipole,
                                .dipoles = 1,
                                .ranks = ranks};
@@ -182,45 +183,14 @@ END_TEST
 
 /* ---- processes that lose each other ---- */
 
-/* Ranks whose planes do not arrive while they are told so. */
-typedef struct bad_line {
-  const dvi_yee_ranks *good;
-  int is_cut;
-} bad_line;
-
-static int pass(int way, int around, int64_t count, const double *sent, double *received,
-                void *user)
-{
-  const bad_line *line = user;
-  return line->is_cut ? 9 : line->good->pass(way, around, count, sent, received, line->good->user);
-}
-
-static int sum(int count, int64_t *number, void *user)
-{
-  const bad_line *line = user;
-  return line->good->sum(count, number, line->good->user);
-}
-
-static int largest(int count, double *number, void *user)
-{
-  const bad_line *line = user;
-  return line->good->largest(count, number, line->good->user);
-}
-
 /* A march that has lost the others is not saved, a file that is refused does not find them, and one
  * that is loaded does. */
 static void lose_part(const dvi_yee_ranks *ranks, void *user)
 {
   state_trial *t = user;
   const int r = ranks->rank;
-  bad_line line = {.good = ranks};
-  const dvi_yee_ranks bad = {.size = sizeof bad,
-                             .rank = r,
-                             .count = ranks->count,
-                             .pass = pass,
-                             .sum = sum,
-                             .largest = largest,
-                             .user = &line};
+  watched_ranks line = {.ranks = ranks};
+  const dvi_yee_ranks bad = watch_ranks(&line);
   dvi_march *march = march_of(&bad, 0.2);
   size_t size;
   line.is_cut = 1;

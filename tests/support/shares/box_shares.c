@@ -149,7 +149,8 @@ static grid *make_grid(unsigned long long seed)
   g->terms = (dvi_yee_terms){.size = sizeof g->terms,
                              .axes = shape < 2 ? 3 : 2,
                              .degree = shape < 3,
-                             .threads = 1 + chosen(&seed, 2)};
+                             .threads = 1 + chosen(&seed, 2),
+                             .together = 1 + chosen(&seed, 5)};
   for (int l = 0; l < g->terms.axes; l++) choose_axis(g, l, &seed);
   choose_media(g, media, &seed);
   choose_sources(g, media, &seed);
@@ -169,7 +170,8 @@ struct box_trial {
   double *start[FORMS];       /* with copies */
   double *form[STEPS][FORMS]; /* with copies */
   double seen[STEPS][OBSERVED], step;
-  int stop; /* the step behind which the state is saved and loaded. Odd ones start with fields */
+  int steps; /* from one look to the next */
+  int stop;  /* the look behind which the state is saved and loaded. Odd ones start with fields */
   unsigned char *bytes; /* [bytes_size] what one process has saved there */
   size_t bytes_size;
 };
@@ -183,7 +185,7 @@ static void observe(const dvi_march *march, double *seen)
 /* Whole steps, and times between them. */
 static double time_of(const box_trial *t, int s)
 {
-  return (s + 0.3 * (s % 3)) * t->step;
+  return (s * t->steps + 0.3 * (s % 3)) * t->step;
 }
 
 static double step_of(const dvi_march *march)
@@ -239,6 +241,7 @@ box_trial *make_box_trial(int number)
   box_trial *t = calloc(1, sizeof *t);
   t->g = make_grid(1000 + (unsigned)number);
   t->stop = number % STEPS;
+  t->steps = 1 + number % 7;
   run_whole_grid(t);
   return t;
 }

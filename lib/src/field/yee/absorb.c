@@ -31,16 +31,35 @@ static double openness(const dvi__yee *y, int c, const int *place)
 
 /* ---- creation ---- */
 
+/* Work on all rows at which this process updates E. */
+static dvi_status for_rows(const dvi_yee_terms *terms, const dvi__yee *y,
+                           dvi_status (*work)(const dvi_yee_terms *terms, const dvi__yee *y, int c,
+                                              int j, int k))
+{
+  int rows[2], planes[2];
+  dvi__yee_reach(y, 1, 0, y->together - 1, rows);
+  dvi__yee_reach(y, 2, 0, y->together - 1, planes);
+  for (int c = 0; c < 3; c++)
+    for (int k = planes[0]; k < planes[1] && y->slot[c] >= 0; k++)
+      for (int j = rows[0]; j < rows[1]; j++)
+        DVI_TRY(work(terms, y, c, dvi__yee_around(y, 1, j), dvi__yee_around(y, 2, k)));
+  return DVI_OK;
+}
+
+static dvi_status count_row(const dvi_yee_terms *terms, const dvi__yee *y, int c, int j, int k)
+{
+  int place[3] = {0, j, k};
+  (void)terms;
+  for (; place[0] < dvi__yee_places(y, c, 0); place[0]++)
+    y->wall_first[row_of(y, c, j, k) + 1] += openness(y, c, place) > 0;
+  return DVI_OK;
+}
+
 /* Count the places of each row, and let each row begin where the one before it ends. */
 static void count_places(const dvi__yee *y)
 {
   const size_t rows = y->rows[0] * y->rows[1] * (size_t)y->edges_slots;
-  const int64_t size = dvi__yee_form_size(y, DVI_FORM_E);
-  for (int64_t i = 0; i < size; i++) {
-    int c, place[3];
-    dvi__yee_place_of(y, DVI_FORM_E, i, &c, place);
-    if (openness(y, c, place) > 0) y->wall_first[row_of(y, c, place[1], place[2]) + 1]++;
-  }
+  (void)for_rows(NULL, y, count_row);
   for (size_t row = 0; row < rows; row++) y->wall_first[row + 1] += y->wall_first[row];
 }
 
@@ -85,10 +104,7 @@ dvi_status dvi__yee_make_walls(const dvi_yee_terms *terms, dvi__yee *y)
     y->wall = DVI_NEW(dvi__yee_wall, y->wall_first[rows]);
   }
   if (y->wall == NULL) return dvi__fail(DVI_NO_MEMORY, "yee: no memory for absorbing ends");
-  for (int c = 0; c < 3; c++)
-    for (int k = y->own[2][0]; k < y->own[2][1] && y->slot[c] >= 0; k++)
-      for (int j = y->own[1][0]; j < y->own[1][1]; j++) DVI_TRY(set_row(terms, y, c, j, k));
-  return DVI_OK;
+  return for_rows(terms, y, set_row);
 }
 
 /* ---- steps ---- */

@@ -77,14 +77,17 @@ static int last_box(const dvi__yee *y, int l)
 }
 
 /* Half of the address space is enough for all. */
-static dvi_status set_sizes(dvi__yee *y)
+static dvi_status set_sizes(const dvi_yee_terms *terms, dvi__yee *y)
 {
   const size_t places = (size_t)y->axis[0].cells + 1;
   double size = 1;
   y->count = (places + VECTOR - 1) / VECTOR * VECTOR;
   y->width = y->count + DVI__YEE_LEFT;
-  for (int l = 1; l < 3; l++)
-    y->rows[l - 1] = y->axis[l].is_trivial ? 1 : (size_t)(last_box(y, l) - y->own[l][0]) + 2;
+  DVI_TRY(dvi__yee_divide(terms, y));
+  for (int l = 1; l < 3; l++) {
+    const int margins = dvi__yee_margin(y, l, 0) + dvi__yee_margin(y, l, 1);
+    y->rows[l - 1] = (size_t)(last_box(y, l) - y->own[l][0]) + (size_t)margins;
+  }
   size = (double)y->width * (double)y->rows[0] * (double)y->rows[1] * y->components;
   if (size > 1e15)
     return dvi__fail(DVI_BAD_SIZE, "yee: a grid of %d x %d x %d boxes is too large",
@@ -108,9 +111,8 @@ dvi_status dvi__yee_make_grid(const dvi_yee_terms *terms, dvi__yee *y)
     if (y->axis[l].end[0].kind == DVI_YEE_BLOCH) y->copies = 2;
   }
   set_slots(y);
-  DVI_TRY(dvi__yee_divide(terms, y));
   count_unknowns(y);
-  return set_sizes(y);
+  return set_sizes(terms, y);
 }
 
 /* ---- numbers of cells ---- */

@@ -2,16 +2,19 @@
  *
  * A layer across y or z is a plane of rows, and each row has its sums beside it. The layers along x
  * are the ends of rows, and their sums at one (j, k) follow each other. */
+#include <string.h>
+
 #include "core/memory.h"
 #include "core/status.h"
 #include "field/yee/yee.h"
 
-enum { DIFFERENCES = 4 };
-
-/* Tell if some of the layers are across planes of another process only. */
+/* Tell if all of the layers are across planes at which this process does not work. */
 static int is_elsewhere(const dvi__yee *y, int axis, const dvi__yee_layers *l)
 {
-  return l->first >= y->own[axis][1] || l->first + l->count <= y->own[axis][0];
+  const int is_divided = axis == y->divided,
+            first = y->own[axis][0] - (is_divided ? y->ghosts[0] : 0),
+            last = y->own[axis][1] + (is_divided ? y->ghosts[1] : 0);
+  return l->first >= last || l->first + l->count <= first;
 }
 
 static size_t count_psi(const dvi__yee *y, int axis, int end)
@@ -21,7 +24,7 @@ static size_t count_psi(const dvi__yee *y, int axis, int end)
   const size_t rows = axis == 0   ? y->rows[0] * y->rows[1] * (size_t)l->width
                       : axis == 1 ? y->rows[1] * (size_t)l->count * y->width
                                   : y->rows[0] * (size_t)l->count * y->width;
-  return DIFFERENCES * rows;
+  return DVI__YEE_DIFFERENCES * rows;
 }
 
 size_t dvi__yee_psi_at(const dvi__yee *y, int axis, int end, int copy, int which, int layer, int j,
@@ -31,9 +34,30 @@ size_t dvi__yee_psi_at(const dvi__yee *y, int axis, int end, int copy, int which
   const size_t number = (size_t)which, row = dvi__yee_row(y, j, k), left = row % y->rows[0],
                below = row / y->rows[0], at = (size_t)copy * l->psi_count,
                layers = (size_t)l->count;
-  if (axis == 0) return at + (row * DIFFERENCES + number) * (size_t)l->width;
+  if (axis == 0) return at + (row * DVI__YEE_DIFFERENCES + number) * (size_t)l->width;
   const size_t across = axis == 1 ? below : left;
-  return at + ((across * layers + (size_t)layer) * DIFFERENCES + number) * y->width + DVI__YEE_LEFT;
+  return at + ((across * layers + (size_t)layer) * DVI__YEE_DIFFERENCES + number) * y->width +
+         DVI__YEE_LEFT;
+}
+
+/* Layers along the divided axis have the sums of a plane row by row, and all others one after the
+ * other. */
+size_t dvi__yee_copy_sums(const dvi__yee *y, int axis, int end, int copy, int layer, int j, int k,
+                          double *buffer, int takes)
+{
+  const dvi__yee_layers *l = &y->axis[axis].layers[end];
+  const size_t across = y->divided == 2 ? y->rows[0] : 1, rows = axis == y->divided ? across : 1,
+               count = DVI__YEE_DIFFERENCES * (axis == 0            ? across * (size_t)l->width
+                                               : axis == y->divided ? y->width
+                                                                    : (size_t)l->count * y->width);
+  for (size_t row = 0; row < rows; row++) {
+    const int at_row = y->divided == 2 ? j + (int)row : j;
+    double *psi = l->psi + dvi__yee_psi_at(y, axis, end, copy, 0, layer, at_row, k) -
+                  (axis == 0 ? 0 : DVI__YEE_LEFT);
+    memcpy(takes ? psi : buffer + row * count, takes ? buffer + row * count : psi,
+           count * sizeof *psi);
+  }
+  return rows * count;
 }
 
 dvi_status dvi__yee_make_layers(dvi__yee *y)

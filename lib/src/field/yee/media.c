@@ -179,12 +179,19 @@ static double *new_array(const dvi__yee *y, quantity what)
 static int before_own(const dvi__yee *y, int axis)
 {
   const int begin = dvi__yee_begin(y, axis), is_divided = axis == y->divided;
-  return begin - (is_divided && (begin > 0 || y->axis[axis].wraps));
+  if (!is_divided || (begin == 0 && !y->axis[axis].wraps)) return begin;
+  return begin - (y->ghosts[0] > 0 ? y->ghosts[0] : 1);
 }
 
-static int around(const dvi__yee *y, int axis, int i)
+/* Find the planes of an axis at which a component needs materials. They are around the axis if it
+ * repeats itself. A step needs 1/mu before the planes where it updates E, too, but for the
+ * component along the divided axis. */
+static void find_range(const dvi__yee *y, int component, int axis, int *range)
 {
-  return i < 0 ? i + y->axis[axis].cells : i;
+  dvi__yee_reach(y, axis, 0, y->together - 1, range);
+  if (component >= DVI__YEE_B && component % 3 != y->divided) range[0] = before_own(y, axis);
+  const int places = dvi__yee_places(y, component, axis);
+  if (!y->axis[axis].wraps && range[1] > places) range[1] = places;
 }
 
 /* Find the boxes in which a function has one value. Where each box is one piece, that is left to
@@ -197,10 +204,13 @@ static dvi_status find_values(stars *s)
     return DVI_OK;
   s->value = DVI_NEW(double, count);
   if (s->value == NULL) return dvi__fail(DVI_NO_MEMORY, "yee: no memory for materials");
-  for (int k = before_own(y, 2); k < dvi__yee_end(y, DVI__YEE_E + 2, 2); k++)
-    for (int j = before_own(y, 1); j < dvi__yee_end(y, DVI__YEE_E + 1, 1); j++)
+  int rows[2], planes[2];
+  find_range(y, DVI__YEE_E + 1, 1, rows);
+  find_range(y, DVI__YEE_E + 2, 2, planes);
+  for (int k = before_own(y, 2); k < planes[1]; k++)
+    for (int j = before_own(y, 1); j < rows[1]; j++)
       for (int i = 0; i < y->axis[0].cells; i++) {
-        const int cell[3] = {i, around(y, 1, j), around(y, 2, k)};
+        const int cell[3] = {i, dvi__yee_around(y, 1, j), dvi__yee_around(y, 2, k)};
         dvi__average_box box = {.space = y->axes};
         for (int l = 0; l < 3; l++) {
           box.lower[l] = y->axis[l].node[cell[l]];
@@ -212,21 +222,20 @@ static dvi_status find_values(stars *s)
   return DVI_OK;
 }
 
-/* Fill an array with the sums over pieces beside those of vacuum, or for eps with the inverse. A
- * step needs 1/mu before the own planes, too, but for the component along the divided axis. */
+/* Fill an array with the sums over pieces beside those of vacuum, or for eps with the inverse. */
 static dvi_status fill_places(const stars *s, double *array)
 {
   const dvi__yee *y = s->y;
   const int first = s->what == PERMEABILITY ? DVI__YEE_B : DVI__YEE_E;
   for (int component = first; component < first + 3; component++) {
-    const int has_before = first == DVI__YEE_B && component % 3 != y->divided,
-              low = has_before ? before_own(y, 1) : dvi__yee_begin(y, 1),
-              bottom = has_before ? before_own(y, 2) : dvi__yee_begin(y, 2);
+    int rows[2], planes[2];
     if (y->slot[component] < 0) continue;
-    for (int k = bottom; k < dvi__yee_end(y, component, 2); k++)
-      for (int j = low; j < dvi__yee_end(y, component, 1); j++)
+    find_range(y, component, 1, rows);
+    find_range(y, component, 2, planes);
+    for (int k = planes[0]; k < planes[1]; k++)
+      for (int j = rows[0]; j < rows[1]; j++)
         for (int i = 0; i < dvi__yee_places(y, component, 0); i++) {
-          const int place[3] = {i, around(y, 1, j), around(y, 2, k)};
+          const int place[3] = {i, dvi__yee_around(y, 1, j), dvi__yee_around(y, 2, k)};
           double sum;
           DVI_TRY(sum_pieces(s, component, place, &sum));
           const double vacuum = vacuum_star(y, component, place);

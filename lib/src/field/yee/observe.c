@@ -324,6 +324,7 @@ dvi_status dvi__yee_observe(const void *self, int i, double *found)
   const dvi__yee *y = self;
   double seen = 0;
   DVI_TRY(dvi__yee_check_ranks(y));
+  dvi__yee_fill_ghosts(y, 1);
   if (i >= FIXED) DVI_TRY(dvi__yee_set_moment(y));
   switch (i) {
   case ENERGY: seen = energy_of(y); break;

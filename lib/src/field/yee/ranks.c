@@ -5,7 +5,12 @@
  * is E of the first nodes behind. A step takes B of the last own boxes first and gives it on, as
  * on an axis that repeats itself, and gives on E of the first nodes when it is done. So all values
  * come from the same operations as on one process. Sums over all processes are exact until they
- * are rounded once (num/accumulator.h). */
+ * are rounded once (num/accumulator.h).
+ *
+ * Where several steps go together, a process has as many planes of its neighbours, the ghosts.
+ * Before the steps these come from their owners, once, and the process updates them along with its
+ * own ones, one plane less on each side in each step, from the same values by the same
+ * operations. */
 #include <string.h>
 
 #include "core/memory.h"
@@ -15,13 +20,22 @@
 struct dvi__yee_planes {
   dvi_yee_ranks ranks;
   int failed;                       /* what a function returned, 0 for success */
+  int filled;                       /* ghosts that are as their owners have them, on each side */
+  int has_layers;                   /* ghosts of some process are in layers across them */
   size_t across;                    /* rows of a plane */
+  size_t sums;                      /* numbers of layers in a plane */
   double *sent, *received, *moment; /* [copies*3*across*width], the last for a moment */
 };
 
 static const char name[] = "xyz";
 
 /* ---- division ---- */
+
+/* Give the first box of a process. */
+static int first_box(int cells, int rank, int count)
+{
+  return (int)((int64_t)cells * rank / count);
+}
 
 static dvi_status check_ranks(const dvi_yee_ranks *r)
 {
@@ -44,9 +58,8 @@ dvi_status dvi__yee_divide(const dvi_yee_terms *terms, dvi__yee *y)
     y->own[l][0] = 0;
     y->own[l][1] = y->axis[l].nodes;
   }
-  if (r == NULL) return DVI_OK;
-  DVI_TRY(check_ranks(r));
-  if (r->count == 1) return DVI_OK;
+  if (r != NULL) DVI_TRY(check_ranks(r));
+  if (r == NULL || r->count == 1) return dvi__yee_choose_together(y, terms, 1);
   if (last == 0)
     return dvi__fail(DVI_UNSUPPORTED,
                      "yee: a grid of one axis cannot be divided among %d processes; run it on one",
@@ -55,9 +68,13 @@ dvi_status dvi__yee_divide(const dvi_yee_terms *terms, dvi__yee *y)
     return dvi__fail(DVI_BAD_ARGUMENT,
                      "yee: axis %c has %d boxes, and %d processes need 2 each; run fewer processes",
                      name[last], cells, r->count);
+  DVI_TRY(dvi__yee_choose_together(y, terms, r->count));
   y->divided = last;
-  y->own[last][0] = (int)((int64_t)cells * r->rank / r->count);
-  if (r->rank < r->count - 1) y->own[last][1] = (int)((int64_t)cells * (r->rank + 1) / r->count);
+  y->own[last][0] = first_box(cells, r->rank, r->count);
+  if (r->rank < r->count - 1) y->own[last][1] = first_box(cells, r->rank + 1, r->count);
+  const int ghosts = y->together > 1 ? y->together : 0, around = y->axis[last].wraps;
+  y->ghosts[0] = r->rank > 0 || around ? ghosts : 0;
+  y->ghosts[1] = r->rank < r->count - 1 || around ? ghosts : 0;
   return DVI_OK;
 }
 
@@ -67,14 +84,42 @@ static size_t count_numbers(const dvi__yee *y)
   return (size_t)y->copies * 3 * across * y->width;
 }
 
+/* Tell if layers along the divided axis reach to ghosts of any process. */
+static int reach_to_ghosts(const dvi__yee *y, const dvi_yee_ranks *r)
+{
+  const dvi__yee_axis *a = &y->axis[y->divided];
+  for (int rank = 1; rank < r->count; rank++)
+    for (int e = 0; e < 2; e++) {
+      const dvi__yee_layers *l = &a->layers[e];
+      const int first = first_box(a->cells, rank, r->count), last = l->first + l->count - 1;
+      if (l->count > 0 && l->first < first + y->together && last >= first - y->together) return 1;
+    }
+  return 0;
+}
+
+/* Count the numbers of sums of layers that a plane of ghosts has at most. */
+static size_t count_sums(const dvi__yee *y, const dvi__yee_planes *p)
+{
+  size_t sums = p->has_layers ? p->across * y->width : 0;
+  for (int e = 0; e < 2; e++) {
+    sums += p->across * (size_t)y->axis[0].layers[e].width;
+    if (y->divided == 2) sums += (size_t)y->axis[1].layers[e].count * y->width;
+  }
+  return DVI__YEE_DIFFERENCES * (size_t)y->copies * sums;
+}
+
 dvi_status dvi__yee_make_planes(const dvi_yee_terms *terms, dvi__yee *y)
 {
   if (y->divided < 0) return DVI_OK;
-  const size_t count = count_numbers(y);
+  size_t count = count_numbers(y);
   y->planes = DVI_NEW(dvi__yee_planes, 1);
   if (y->planes != NULL) {
     y->planes->ranks = *terms->ranks;
     y->planes->across = y->divided == 2 ? y->rows[0] : 1;
+    y->planes->has_layers = reach_to_ghosts(y, terms->ranks);
+    y->planes->sums = count_sums(y, y->planes);
+    if (y->together > 1 && count < (size_t)y->together * y->planes->sums)
+      count = (size_t)y->together * y->planes->sums;
     y->planes->sent = DVI_NEW(double, count);
     y->planes->received = DVI_NEW(double, count);
     y->planes->moment = DVI_NEW(double, count);
@@ -266,6 +311,65 @@ void dvi__yee_pass_faces_back(const dvi__yee *y)
 {
   if (y->divided < 0) return;
   pass(y, DVI__YEE_B, 1, -1, dvi__yee_begin(y, y->divided), y->own[y->divided][1]);
+}
+
+/* ---- ghosts ---- */
+
+/* Copy sums of layers in a plane of ghosts, or one that others have as such, to a buffer or from
+ * it. */
+static void copy_sums(const dvi__yee *y, int plane, double *buffer, int takes)
+{
+  const int j = y->divided == 2 ? -1 : plane, k = y->divided == 2 ? plane : 0;
+  for (int axis = 0; axis < 3; axis++)
+    for (int e = 0; e < 2; e++) {
+      const dvi__yee_layers *l = &y->axis[axis].layers[e];
+      const int layer = axis == y->divided ? plane - l->first : 0;
+      if (l->count == 0 || layer < 0 || layer >= l->count) continue;
+      for (int copy = 0; copy < y->copies; copy++)
+        buffer += dvi__yee_copy_sums(y, axis, e, copy, layer, j, k, buffer, takes);
+    }
+}
+
+/* Give the numbers of planes from a place on, which are beside the own ones. */
+static double *planes_at(const dvi__yee *y, int copy, int place)
+{
+  const int l = y->divided, row = place - y->own[l][0] + dvi__yee_margin(y, l, 0);
+  return y->state[copy] + (size_t)row * y->planes->across * (size_t)y->components * y->width;
+}
+
+/* Give planes to a neighbour, from a place on, and receive those at another place. Where there is
+ * no neighbour nothing is sent, or received. */
+static void pass_ghosts(const dvi__yee *y, int way, int planes, int from, int to)
+{
+  dvi__yee_planes *p = y->planes;
+  const dvi_yee_ranks *r = &p->ranks;
+  const int around = y->axis[y->divided].wraps, sends = y->ghosts[way > 0] > 0,
+            receives = y->ghosts[way < 0] > 0;
+  const int64_t count = (int64_t)(p->across * (size_t)y->components * y->width) * planes,
+                sums = (int64_t)p->sums * planes;
+  for (int copy = 0; copy < y->copies && p->failed == 0; copy++)
+    p->failed = r->pass(way, around, count, planes_at(y, copy, from),
+                        receives ? planes_at(y, copy, to) : p->received, r->user);
+  if (sums == 0 || p->failed != 0) return;
+  for (int i = 0; i < planes && sends; i++)
+    copy_sums(y, dvi__yee_around(y, y->divided, from + i), p->sent + p->sums * (size_t)i, 0);
+  p->failed = r->pass(way, around, sums, p->sent, p->received, r->user);
+  for (int i = 0; i < planes && receives && p->failed == 0; i++)
+    copy_sums(y, dvi__yee_around(y, y->divided, to + i), p->received + p->sums * (size_t)i, 1);
+}
+
+void dvi__yee_fill_ghosts(const dvi__yee *y, int planes)
+{
+  if (y->ghosts[0] + y->ghosts[1] == 0 || y->planes->filled >= planes) return;
+  const int *own = y->own[y->divided];
+  pass_ghosts(y, 1, planes, own[1] - planes, own[0] - planes);
+  pass_ghosts(y, -1, planes, own[0], own[1]);
+  y->planes->filled = planes;
+}
+
+void dvi__yee_spoil_ghosts(const dvi__yee *y)
+{
+  if (y->planes != NULL) y->planes->filled = 0;
 }
 
 /* ---- other numbers of planes ---- */

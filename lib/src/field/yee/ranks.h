@@ -4,7 +4,7 @@
 #include "field/yee/yee.h"
 #include "num/accumulator.h"
 
-/* Find the own places of this process, from the axes. */
+/* Find the own places of this process, from the axes, and how many steps go together. */
 dvi_status dvi__yee_divide(const dvi_yee_terms *terms, dvi__yee *yee);
 /* Make room for planes that go to other processes, or come from them. Nothing on a whole grid. */
 dvi_status dvi__yee_make_planes(const dvi_yee_terms *terms, dvi__yee *yee);
@@ -21,6 +21,11 @@ void dvi__yee_lose_ranks(const dvi__yee *yee, int failure);
  * one before, which a step needs there, of the components across the divided axis. */
 void dvi__yee_pass_faces(const dvi__yee *yee);
 void dvi__yee_pass_edges(const dvi__yee *yee);
+/* Have E and B, and the sums of layers, of so many planes of the neighbours before and behind the
+ * own ones: nothing if they are there since the last steps. Nothing without ghosts. */
+void dvi__yee_fill_ghosts(const dvi__yee *yee, int planes);
+/* Tell that something has moved since. */
+void dvi__yee_spoil_ghosts(const dvi__yee *yee);
 /* Give B along the divided axis of the first plane to the process before this one. */
 void dvi__yee_pass_faces_back(const dvi__yee *yee);
 /* Give numbers of a plane to the process after this one. They are put to dvi__yee_plane_sent, with

@@ -222,6 +222,7 @@ dvi_status dvi__yee_sample(const void *self, dvi_march_form form, int64_t count,
 {
   const dvi__yee *y = self;
   const int64_t size = dvi__yee_form_size(y, form);
+  dvi__yee_fill_ghosts(y, 1);
   DVI_TRY(dvi__yee_set_moment(y));
   for (int64_t i = 0; i < count; i++) {
     const int64_t number = cell != NULL ? cell[i] : i;

@@ -121,7 +121,8 @@ dvi_status dvi__yee_set_moment(const dvi__yee *y)
 /* Let a source act on an edge with the profile J_e. */
 static dvi_status drive_edge(dvi__yee *y, int number, int c, const int *place, double profile)
 {
-  if (profile == 0 || !dvi__yee_is_unknown(y, c, place) || !dvi__yee_owns(y, place)) return DVI_OK;
+  if (profile == 0 || !dvi__yee_is_unknown(y, c, place) || !dvi__yee_updates(y, c, place))
+    return DVI_OK;
   const double s = dvi__yee_loss(y, c, place);
   return dvi__yee_add_act(y, &y->on_edges, c, place, number,
                           -profile / (dvi__yee_star(y, c, place) * (1 + s)), 0);
@@ -228,12 +229,17 @@ static dvi_status profile_of(const dvi__yee *y, const dvi_yee_current *current, 
 static dvi_status add_current(dvi__yee *y, const dvi_yee_current *current, int number)
 {
   for (int c = 0, which = 0; c < 3; c++) {
-    int place[3];
+    int rows[2], planes[2];
     if (y->slot[c] < 0) continue;
-    for (place[2] = dvi__yee_begin(y, 2); place[2] < dvi__yee_end(y, c, 2); place[2]++)
-      for (place[1] = dvi__yee_begin(y, 1); place[1] < dvi__yee_end(y, c, 1); place[1]++)
-        for (place[0] = 0; place[0] < dvi__yee_places(y, c, 0); place[0]++) {
+    dvi__yee_reach(y, 1, 0, y->together - 1, rows);
+    dvi__yee_reach(y, 2, 0, y->together - 1, planes);
+    for (int k = planes[0]; k < planes[1]; k++)
+      for (int j = rows[0]; j < rows[1]; j++)
+        for (int i = 0; i < dvi__yee_places(y, c, 0); i++) {
+          const int place[3] = {i, dvi__yee_around(y, 1, j), dvi__yee_around(y, 2, k)};
           double profile;
+          if (place[1] >= dvi__yee_places(y, c, 1) || place[2] >= dvi__yee_places(y, c, 2))
+            continue;
           DVI_TRY(profile_of(y, current, c, which, place, &profile));
           DVI_TRY(drive_edge(y, number, c, place, profile));
         }

@@ -22,6 +22,7 @@ void dvi__yee_wrap_values(dvi__yee *y)
     for (int j = y->own[1][0]; j < y->own[1][1]; j++) dvi__yee_wrap_rows(y, j, k);
   dvi__yee_pass_edges(y);
   dvi__yee_pass_faces(y);
+  dvi__yee_spoil_ghosts(y);
 }
 
 /* Give no field to edges on conductors. */

@@ -6,6 +6,8 @@
  * and in a tile of rows it also lies s rows lower, so that all that it reads is in the tile or in
  * the one before (Wolf and Lam 1991, skewing of loops). Threads take the tiles in turn, each behind
  * the tile before by one plane at least. */
+#include <limits.h>
+
 #include "core/memory.h"
 #include "core/status.h"
 #include "field/yee/ranks.h"
@@ -22,10 +24,24 @@ static int rows_of(const dvi__yee *y)
   return y->own[1][1] - y->own[1][0];
 }
 
+static int has_ghosts(const dvi__yee *y)
+{
+  return y->ghosts[0] + y->ghosts[1] > 0;
+}
+
+/* Give the first row, or plane, of the first of several steps. */
+static int first_of(const dvi__yee *y, int axis, int steps)
+{
+  int range[2];
+  dvi__yee_reach(y, axis, 1, steps - 1, range);
+  return range[0];
+}
+
 static int tiles_of(const dvi__yee *y, int steps)
 {
-  const int lower = y->axis[1].is_trivial ? 0 : steps - 1;
-  return (rows_of(y) + lower + y->tile - 1) / y->tile;
+  const int lower = y->axis[1].is_trivial ? 0 : steps - 1,
+            rows = y->own[1][1] - first_of(y, 1, steps);
+  return (rows + lower + y->tile - 1) / y->tile;
 }
 
 static dvi__yee_worker worker_of(const dvi__yee *y, int member, int step)
@@ -40,20 +56,28 @@ static dvi__yee_worker worker_of(const dvi__yee *y, int member, int step)
  * needs them, or another process does, or -1. */
 static int early(const dvi__yee *y, int axis)
 {
+  if (has_ghosts(y)) return -1;
   if (axis == y->divided) return dvi__yee_last_boxes(y);
   return y->axis[axis].wraps ? y->axis[axis].cells - 1 : -1;
 }
 
-/* Take a step of the rows first to last-1 of a plane. If y is divided, the early ones are done. */
-static void take_rows(const dvi__yee_worker *w, int first, int last, int k)
+/* Rows first to last-1 of a plane. At the place `bare` of the divided axis B is updated alone,
+ * which E behind it needs. Elsewhere that is INT_MIN. */
+typedef struct row_range {
+  int first, last, k, bare;
+} row_range;
+
+/* Take a step of rows. If y is divided, the early ones are done. */
+static void take_rows(const dvi__yee_worker *w, const row_range *r)
 {
   const dvi__yee *y = w->yee;
-  const int is_done = k == early(y, 2), early_row = early(y, 1);
-  if (early_row >= 0 && y->divided != 1 && first == 0 && !is_done)
+  const int k = dvi__yee_around(y, 2, r->k), is_done = k == early(y, 2), early_row = early(y, 1);
+  if (early_row >= 0 && y->divided != 1 && r->first == 0 && !is_done)
     dvi__yee_update_faces(w, early_row, k);
-  for (int j = first; j < last; j++) {
+  for (int row = r->first; row < r->last; row++) {
+    const int j = dvi__yee_around(y, 1, row);
     if (!is_done && j != early_row) dvi__yee_update_faces(w, j, k);
-    dvi__yee_update_edges(w, j, k);
+    if ((y->divided == 1 ? row : r->k) != r->bare) dvi__yee_update_edges(w, j, k);
   }
 }
 
@@ -74,19 +98,34 @@ static void await_tile(const dvi__yee *y, int tile, int front)
     dvi__team_pause(waited);
 }
 
+/* Take the rows of a tile in one of the steps, at a plane that may be outside of the step's. */
+static void take_plane(const sweep *s, const dvi__yee_worker *worker, int tile, int step, int k)
+{
+  const dvi__yee *y = s->yee;
+  const int left = s->steps - 1 - step, skew = !y->axis[1].is_trivial,
+            low = first_of(y, 1, s->steps) + tile * y->tile - skew * step, high = low + y->tile;
+  int across[2], planes[2];
+  dvi__yee_reach(y, 1, 1, left, across);
+  dvi__yee_reach(y, 2, 1, left, planes);
+  if (k < planes[0] || k >= planes[1]) return;
+  const row_range r = {.first = low > across[0] ? low : across[0],
+                       .last = high < across[1] ? high : across[1],
+                       .k = k,
+                       .bare = y->ghosts[0] == 0 ? INT_MIN
+                               : y->divided == 1 ? across[0]
+                                                 : planes[0]};
+  take_rows(worker, &r);
+}
+
 static void take_tile(const sweep *s, int member, int tile)
 {
   const dvi__yee *y = s->yee;
-  const int planes = y->own[2][1] - y->own[2][0], rows = rows_of(y), left = y->own[1][0],
-            below = y->own[2][0], skew = !y->axis[1].is_trivial;
-  for (int front = 0; front < planes + s->steps - 1; front++) {
+  const int below = first_of(y, 2, s->steps), fronts = y->own[2][1] - below + s->steps - 1;
+  for (int front = 0; front < fronts; front++) {
     if (tile > 0) await_tile(y, tile - 1, front);
     for (int step = 0; step < s->steps; step++) {
-      const int k = front - step, low = tile * y->tile - skew * step, high = low + y->tile;
       const dvi__yee_worker worker = worker_of(y, member, step);
-      if (k >= 0 && k < planes)
-        take_rows(&worker, left + (low > 0 ? low : 0), left + (high < rows ? high : rows),
-                  below + k);
+      take_plane(s, &worker, tile, step, below + front - step);
     }
     atomic_store_explicit(&y->progress[tile], front + 1, memory_order_release);
   }
@@ -106,39 +145,62 @@ static void run(const dvi__yee *y, void (*work)(void *user, int member), sweep *
     work(s, 0);
 }
 
+/* Take a step after the early faces, which other processes need, and give them E. */
+static void run_divided(const dvi__yee *y, sweep *s)
+{
+  if (y->axis[2].wraps || y->divided >= 0) run(y, take_early_faces, s);
+  dvi__yee_pass_faces(y);
+  run(y, take_tiles, s);
+  dvi__yee_pass_edges(y);
+}
+
 void dvi__yee_sweep(dvi__yee *y, int steps)
 {
   sweep s = {y, steps, tiles_of(y, steps)};
   y->lanes = dvi__yee_lanes_in_use();
   for (int tile = 0; tile < s.tiles; tile++) atomic_store(&y->progress[tile], 0);
-  if (y->axis[2].wraps || y->divided >= 0) run(y, take_early_faces, &s);
-  dvi__yee_pass_faces(y);
+  if (!has_ghosts(y)) {
+    run_divided(y, &s);
+    return;
+  }
+  dvi__yee_fill_ghosts(y, steps);
   run(y, take_tiles, &s);
-  dvi__yee_pass_edges(y);
+  dvi__yee_spoil_ghosts(y);
 }
 
 /* ---- tiles ---- */
 
-static int may_go_together(const dvi__yee *y)
+/* Give the most steps that can go together. On an axis that repeats itself E and B go around after
+ * each step, unless other processes have them: then ghosts do, but for phases, whose roundings
+ * depend on where they are multiplied with. A process has the ghosts of its neighbours only, and on
+ * both sides other ones. */
+static int most_together(const dvi__yee *y, int processes)
 {
-  return !y->axis[1].wraps && !y->axis[2].wraps && y->divided < 0;
+  const int cells = processes > 1 ? y->axis[y->axes - 1].cells : 0;
+  for (int l = 1; l < 3; l++)
+    if (y->axis[l].wraps && (processes == 1 || l < y->axes - 1 || y->copies > 1)) return 1;
+  if (processes == 1) return DVI__YEE_MOST_TOGETHER;
+  return processes == 2 && y->axis[y->axes - 1].wraps ? cells / 4 : cells / processes;
 }
 
-/* Choose how many steps go together, and tiles whose planes of all steps stay in a cache. */
-static void choose_tiles(dvi__yee *y, const dvi_yee_terms *terms)
+/* Choose how many steps go together if nothing is asked for: one where all of a process fits into
+ * a cache. A process that takes s together updates up to s planes of others in a step, and goes
+ * through its own ones in memory 1/s times. The square root of a quarter of these balances it. */
+static int default_together(const dvi__yee *y, int processes, size_t bytes)
 {
-  const size_t row = (size_t)(y->copies * y->components) * y->width * sizeof(double),
-               all = row * y->rows[0] * y->rows[1];
-  y->together = terms->together > 0 ? terms->together : all > CACHE ? DEFAULT_TOGETHER : 1;
-  if (!may_go_together(y)) y->together = 1;
-  const size_t planes = y->axis[2].is_trivial ? 1 : (size_t)y->together + 2,
-               fitting = CACHE / (row * planes);
-  const int rows = rows_of(y), share = (rows + y->threads - 1) / y->threads;
-  y->tile = fitting > LEAST_TILE ? (fitting < (size_t)rows ? (int)fitting : rows) : LEAST_TILE;
-  if (y->threads > 1 && y->tile > share) y->tile = share;
+  const int planes = y->axis[y->axes - 1].cells / processes;
+  int steps = DEFAULT_TOGETHER;
+  if (bytes <= CACHE) return 1;
+  while (processes > 1 && steps > 1 && 4 * steps * steps > planes) steps--;
+  return steps;
 }
 
-dvi_status dvi__yee_make_sweeps(dvi__yee *y, const dvi_yee_terms *terms)
+static size_t bytes_of_row(const dvi__yee *y)
+{
+  return (size_t)(y->copies * y->components) * y->width * sizeof(double);
+}
+
+dvi_status dvi__yee_choose_together(dvi__yee *y, const dvi_yee_terms *terms, int processes)
 {
   if (terms->threads < 0 || terms->threads > 1024 || terms->together < 0 ||
       terms->together > DVI__YEE_MOST_TOGETHER)
@@ -146,8 +208,29 @@ dvi_status dvi__yee_make_sweeps(dvi__yee *y, const dvi_yee_terms *terms)
                      "yee: %d threads and %d steps together are asked for; up to 1024 and %d are "
                      "possible",
                      terms->threads, terms->together, DVI__YEE_MOST_TOGETHER);
+  size_t all = bytes_of_row(y) / (size_t)processes;
+  for (int l = 1; l < 3; l++)
+    if (!y->axis[l].is_trivial) all *= (size_t)y->axis[l].cells + 2;
+  const int most = most_together(y, processes);
+  y->together = terms->together > 0 ? terms->together : default_together(y, processes, all);
+  if (y->together > most) y->together = most;
+  return DVI_OK;
+}
+
+/* Choose tiles whose planes of all steps stay in a cache. */
+static void choose_tiles(dvi__yee *y)
+{
+  const size_t planes = y->axis[2].is_trivial ? 1 : (size_t)y->together + 2,
+               fitting = CACHE / (bytes_of_row(y) * planes);
+  const int rows = rows_of(y), share = (rows + y->threads - 1) / y->threads;
+  y->tile = fitting > LEAST_TILE ? (fitting < (size_t)rows ? (int)fitting : rows) : LEAST_TILE;
+  if (y->threads > 1 && y->tile > share) y->tile = share;
+}
+
+dvi_status dvi__yee_make_sweeps(dvi__yee *y, const dvi_yee_terms *terms)
+{
   y->threads = terms->threads > 0 ? terms->threads : 1;
-  choose_tiles(y, terms);
+  choose_tiles(y);
   y->progress = DVI_NEW(atomic_int, tiles_of(y, y->together));
   y->scratch = DVI_NEW(double, (size_t)y->threads *DVI__YEE_SCRATCH * y->width);
   if (y->progress == NULL || y->scratch == NULL)

@@ -257,7 +257,7 @@ static dvi_status add_incident(dvi__yee *y, const dvi__yee_beam *beam, int compo
   double size = is_H ? beam->H[c] : beam->E[c], w[2];
   for (int l = 0; l < 3; l++)
     if (dvi__yee_reaches(incident, l)) size *= y->axis[l].length[there[l]];
-  if (!dvi__yee_owns(y, place)) return DVI_OK;
+  if (!dvi__yee_updates(y, component, place)) return DVI_OK;
   if (size == 0 || place[0] >= dvi__yee_places(y, component, 0) ||
       place[1] >= dvi__yee_places(y, component, 1) || place[2] >= dvi__yee_places(y, component, 2))
     return DVI_OK;
@@ -288,12 +288,13 @@ static dvi_status add_pair(dvi__yee *y, const dvi__yee_beam *beam, int axis, int
   if (end == 0) face[axis]--;
   if (y->slot[c] < 0 || y->slot[DVI__YEE_B + b] < 0) return DVI_OK;
   if (!dvi__yee_is_unknown(y, c, edge)) return DVI_OK;
-  if (!dvi__yee_owns(y, edge) && !dvi__yee_owns(y, face)) return DVI_OK;
-  if (dvi__yee_owns(y, edge)) DVI_TRY(check_vacuum(y, c, edge, b, face));
+  const int has_edge = dvi__yee_updates(y, c, edge);
+  if (!has_edge && !dvi__yee_updates(y, DVI__YEE_B + b, face)) return DVI_OK;
+  if (has_edge) DVI_TRY(check_vacuum(y, c, edge, b, face));
   const dvi__yee_axis *a = &y->axis[axis];
   const double sign = (end == 0) == is_next ? -1 : 1,
                change = end == 0 ? a->down[edge[axis]] : a->up[edge[axis]],
-               factor = dvi__yee_owns(y, edge) ? change / (1 + dvi__yee_loss(y, c, edge)) : 0;
+               factor = has_edge ? change / (1 + dvi__yee_loss(y, c, edge)) : 0;
   DVI_TRY(add_incident(y, beam, DVI__YEE_B + b, face, c, edge, sign * y->dt));
   return add_incident(y, beam, c, edge, DVI__YEE_B + b, face, sign * factor);
 }

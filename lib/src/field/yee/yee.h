@@ -21,7 +21,7 @@
 #include "march/kind.h"
 #include "num/team.h"
 
-enum { DVI__YEE_LEFT = 8, DVI__YEE_E = 0, DVI__YEE_B = 3 };
+enum { DVI__YEE_LEFT = 8, DVI__YEE_E = 0, DVI__YEE_B = 3, DVI__YEE_DIFFERENCES = 4 };
 
 /* Factors of absorbing layers, at the boxes of one end of an axis. Each difference D becomes
  * D + r D + psi with psi <- b psi + a D, r = 1/kappa - 1. Factors of nodes act on E, those of boxes
@@ -99,6 +99,7 @@ typedef struct dvi__yee {
   size_t count;      /* places that a loop passes over */
   int divided;       /* the axis that processes divide among them, or -1 */
   int own[3][2];     /* nodes own[l][0] to own[l][1]-1 of an axis are of this process */
+  int ghosts[2];     /* planes before and behind these that it works on, too. See ranks.c */
   size_t rows[2];    /* rows along y, planes along z, with the layers around them */
   size_t size;       /* numbers of a copy */
   ptrdiff_t next[3]; /* from a place to the next one along an axis, 0 if trivial */
@@ -141,12 +142,19 @@ enum { DVI__YEE_SCRATCH = 10, DVI__YEE_MOST_TOGETHER = 16 };
 
 /* ---- places ---- */
 
+/* Give how many layers an axis has before (0) the own places, or behind (1) the own boxes. */
+static inline int dvi__yee_margin(const dvi__yee *y, int axis, int side)
+{
+  if (axis == y->divided && y->ghosts[side] > 0) return y->ghosts[side];
+  return !y->axis[axis].is_trivial;
+}
+
 /* Give the number of a place along an axis among those in memory. The axis that is divided has
  * planes of the other processes beside the own ones, and may repeat itself. */
 static inline size_t dvi__yee_row_along(const dvi__yee *y, int axis, int i)
 {
   const dvi__yee_axis *a = &y->axis[axis];
-  int row = i - y->own[axis][0] + !a->is_trivial;
+  int row = i - y->own[axis][0] + dvi__yee_margin(y, axis, 0);
   if (axis == y->divided && row < 0) row += a->cells;
   if (axis == y->divided && row >= (int)y->rows[axis - 1]) row -= a->cells;
   return (size_t)row;
@@ -217,6 +225,38 @@ static inline int dvi__yee_owns(const dvi__yee *y, const int *place)
 {
   const int l = y->divided;
   return l < 0 || (place[l] >= y->own[l][0] && place[l] < y->own[l][1]);
+}
+
+/* Give the places of an axis at which this process updates E, or B, so that `left` more steps need
+ * nothing of other processes, where it has ghosts: from range[0] to range[1]-1. On an axis that
+ * repeats itself they may be beyond its ends. */
+static inline void dvi__yee_reach(const dvi__yee *y, int axis, int is_face, int left, int *range)
+{
+  const int is_divided = axis == y->divided;
+  range[0] = y->own[axis][0] - (is_divided && y->ghosts[0] > 0 ? left + is_face : 0);
+  range[1] = y->own[axis][1] + (is_divided && y->ghosts[1] > 0 ? left : 0);
+}
+
+/* Give the place of the grid for one that is beyond the end of an axis that repeats itself. */
+static inline int dvi__yee_around(const dvi__yee *y, int axis, int i)
+{
+  const dvi__yee_axis *a = &y->axis[axis];
+  if (i < 0) return i + a->cells;
+  return a->wraps && i >= a->cells ? i - a->cells : i;
+}
+
+/* Tell if this process updates a component at a place in some step. */
+static inline int dvi__yee_updates(const dvi__yee *y, int component, const int *place)
+{
+  const int l = y->divided, cells = l < 0 || !y->axis[l].wraps ? 0 : y->axis[l].cells;
+  int range[2];
+  if (l < 0) return 1;
+  dvi__yee_reach(y, l, component >= DVI__YEE_B, y->together - 1, range);
+  for (int i = place[l] - cells; i <= place[l] + cells; i += cells) {
+    if (i >= range[0] && i < range[1]) return 1;
+    if (cells == 0) return 0;
+  }
+  return 0;
 }
 
 /* Give the last plane of boxes along the divided axis. */
@@ -362,6 +402,11 @@ dvi_status dvi__yee_make_layers(dvi__yee *yee);
 size_t dvi__yee_psi_at(const dvi__yee *yee, int axis, int end, int copy, int which, int layer,
                        int j, int k);
 
+/* Copy all four of the layers at one end that a plane of the divided axis has, of which (j, k) is
+ * the first row, to a buffer or from it. Return how many numbers they are. */
+size_t dvi__yee_copy_sums(const dvi__yee *yee, int axis, int end, int copy, int layer, int j, int k,
+                          double *buffer, int takes);
+
 /* ---- row.c ---- */
 
 /* Who updates rows: a member of the team, in one of the steps that are taken together. */
@@ -378,6 +423,8 @@ void dvi__yee_wrap_rows(const dvi__yee *yee, int j, int k);
 
 /* ---- sweep.c ---- */
 
+/* Choose how many steps go together, as all of `processes` processes do. */
+dvi_status dvi__yee_choose_together(dvi__yee *yee, const dvi_yee_terms *terms, int processes);
 /* Choose the tiles, and make what sweeps need. */
 dvi_status dvi__yee_make_sweeps(dvi__yee *yee, const dvi_yee_terms *terms);
 /* Take up to `together` steps with the drives that are prepared. */
