@@ -91,6 +91,48 @@ START_TEST(waves_have_the_bits_of_the_whole_mesh)
 }
 END_TEST
 
+/* ---- steps that are too long ---- */
+
+typedef struct refusals {
+  dvi_status status[PROCESSES];
+  char sentence[PROCESSES][256];
+} refusals;
+
+static void march_too_fast(const dvi_mesh *mesh, int rank, void *user)
+{
+  refusals *r = user;
+  const dvi_march_options options = {.size = sizeof options, .step = 1};
+  dvi_field *field = lossy_field(mesh);
+  dvi_march *march = NULL;
+  r->status[rank] = dvi_march_create(field, &options, &march);
+  (void)strncpy(r->sentence[rank], dvi_last_error(), 255);
+  dvi_march_destroy(&march);
+  dvi_field_destroy(&field);
+}
+
+/* The owner of the cell that makes the bound says what one process says, with the cell's number in
+ * the whole mesh. */
+START_TEST(a_step_that_is_too_long_is_refused_with_the_sentence_of_one_process)
+{
+  const dvi_generator_options options = {.cells = {4, 4, 4}, .grading = {1.2, 1, 1.4}};
+  dvi_mesh *mesh = with_core_and_exit(generated("box", options), NULL);
+  refusals whole = {.status = {DVI_OK}}, here = {.status = {DVI_OK}};
+  int owner[64], namers = 0;
+  march_too_fast(mesh, 0, &whole);
+  divide(64, PROCESSES - 1, _i, owner);
+  run_ranks(mesh, PROCESSES - 1, owner, march_too_fast, &here);
+  for (int r = 0; r < PROCESSES - 1; r++) {
+    const int is_namer = strcmp(here.sentence[r], whole.sentence[0]) == 0;
+    namers += is_namer;
+    ck_assert_int_eq(here.status[r], DVI_BAD_ARGUMENT);
+    ck_assert_msg(is_namer || strstr(here.sentence[r], "another one of 5 processes") != NULL, "%s",
+                  here.sentence[r]);
+  }
+  ck_assert_int_eq(namers, 1);
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
+
 SUITE(shares)
 {
   tcase_add_test(tests, tetrahedra_have_the_bits_of_the_whole_mesh);
@@ -98,4 +140,6 @@ SUITE(shares)
   tcase_add_test(tests, intervals_have_the_bits_of_the_whole_mesh);
   tcase_add_test(tests, boxes_have_the_bits_of_the_whole_mesh);
   tcase_add_test(tests, waves_have_the_bits_of_the_whole_mesh);
+  tcase_add_loop_test(tests, a_step_that_is_too_long_is_refused_with_the_sentence_of_one_process, 0,
+                      2);
 }

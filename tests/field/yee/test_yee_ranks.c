@@ -4,6 +4,7 @@
 #include <dvi/yee.h>
 #include <string.h>
 
+#include "core/memory.h"
 #include "support/field/ranks.h"
 #include "support/shares/box_shares.h"
 #include "support/suite.h"
@@ -272,6 +273,36 @@ START_TEST(a_signal_that_fails_on_one_process_loses_nothing)
 }
 END_TEST
 
+/* One process has no memory for its k-th array. */
+typedef struct shortage {
+  long successes;
+  dvi_status status[PROCESSES];
+} shortage;
+
+static void run_short(const dvi_yee_ranks *ranks, void *user)
+{
+  shortage *s = user;
+  dvi_yee_terms terms = small;
+  dvi_march *march = NULL;
+  terms.ranks = ranks;
+  if (ranks->rank == s->successes % 2) dvi__fail_allocations_after(s->successes);
+  s->status[ranks->rank] = dvi_yee_create(&terms, &march);
+  dvi__fail_allocations_after(-1);
+  dvi_march_destroy(&march);
+}
+
+START_TEST(memory_that_lacks_on_one_process_ends_all)
+{
+  shortage s = {.status = {DVI_NO_MEMORY}};
+  for (s.successes = 0; s.status[0] != DVI_OK; s.successes++) {
+    run_box_ranks(2, run_short, &s);
+    ck_assert_int_eq(s.status[1], s.status[0]);
+    ck_assert(s.status[0] == DVI_OK || s.status[0] == DVI_NO_MEMORY);
+  }
+  ck_assert(s.successes > 10);
+}
+END_TEST
+
 SUITE(yee_ranks)
 {
   tcase_add_loop_test(tests, values_have_the_bits_of_one_process, 0, TRIALS);
@@ -281,4 +312,5 @@ SUITE(yee_ranks)
   tcase_add_test(tests, a_failure_to_speak_is_told_until_a_start);
   tcase_add_test(tests, steps_that_go_together_exchange_planes_once);
   tcase_add_test(tests, a_signal_that_fails_on_one_process_loses_nothing);
+  tcase_add_test(tests, memory_that_lacks_on_one_process_ends_all);
 }

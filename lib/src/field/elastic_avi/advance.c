@@ -56,22 +56,48 @@ static dvi_status stand_before(dvi__solid_avi *avi, double limit, dvi__solid_hal
   return dvi__fail_in(refuse(avi, &halt), "%s: at t = %g", avi->method, halt.t);
 }
 
-/* The same where processes share the solid. The first event that fails on one of them is known,
- * since each of them has its events in order, and failures change later times alone. */
+/* Give the time of the first event that has failed on any process, or infinity. A run in which
+ * values did not arrive is lost, as is one whose end nobody knows. */
+static dvi_status find_first_failure(dvi__solid_avi *avi, dvi__solid_halt halt, double *t)
+{
+  double first = halt.returned != 0 ? -halt.t : -(double)INFINITY;
+  if (avi->is_lost)
+    return dvi__fail(DVI_CALLBACK_FAILED,
+                     "%s: after t = %g the processes could not tell each other where nodes are",
+                     avi->method, avi->kept_clock.t);
+  const dvi_status status = dvi__largest_of_all(avi->solid->mesh, 1, &first);
+  avi->is_lost = status != DVI_OK;
+  *t = -first;
+  return status;
+}
+
+/* Let the events since the last look up to a limit happen again on all processes. What fails even
+ * now, as a callback may at any call, sets a limit before it. */
+static dvi_status go_back(dvi__solid_avi *avi, double limit)
+{
+  double first = INFINITY;
+  do {
+    const dvi__solid_halt halt = redo(avi, limit);
+    DVI_TRY(find_first_failure(avi, halt, &first));
+    limit = nextafter(first, -INFINITY);
+  } while (isfinite(first));
+  return dvi__solid_complete(avi);
+}
+
+/* The same as stand_before where processes share the solid. Each of them has its events in order,
+ * and failures change later times alone. */
 static dvi_status stand_before_first(dvi__solid_avi *avi, double limit, dvi__solid_halt halt)
 {
-  const dvi_mesh *mesh = avi->solid->mesh;
   const double before = avi->clock.t;
-  double first = halt.returned != 0 ? -halt.t : -(double)INFINITY;
-  DVI_TRY(dvi__largest_of_all(mesh, 1, &first));
+  double first = INFINITY;
+  DVI_TRY(find_first_failure(avi, halt, &first));
   if (isinf(first)) return dvi__solid_complete(avi);
-  (void)redo(avi, nextafter(-first, -INFINITY));
-  DVI_TRY(dvi__solid_complete(avi));
+  dvi_status status = go_back(avi, nextafter(first, -INFINITY));
   avi->clock.t = fmin(fmax(avi->clock.t, before), limit);
-  dvi_status status = DVI_OK;
-  if (halt.returned != 0 && halt.t == -first)
+  if (status != DVI_OK) return status;
+  if (halt.returned != 0 && halt.t == first)
     status = dvi__fail_in(refuse(avi, &halt), "%s: at t = %g", avi->method, halt.t);
-  return dvi__agree(mesh, status);
+  return dvi__agree(avi->solid->mesh, status);
 }
 
 static dvi_status run(dvi__solid_avi *avi, double t)
@@ -150,8 +176,7 @@ dvi_status dvi__solid_avi_advance(dvi__solid_avi *avi, double t)
   if (avi->kept_clock.t >= before) {
     dvi__solid_take_back(avi);
   } else {
-    (void)redo(avi, limit_of(avi, before));
-    (void)dvi__solid_complete(avi);
+    (void)go_back(avi, limit_of(avi, before));
     avi->clock.t = before;
   }
   return status;

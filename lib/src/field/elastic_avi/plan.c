@@ -59,7 +59,7 @@ static dvi_status find_bounds(const dvi_elastic *e, dvi__solid_plan *plan)
     plan->bound[c] = bound_of(sqrt(lambda), e->materials[e->material[c]].beta);
     if (!(plan->bound[c] > 0) || isinf(plan->bound[c]))
       return dvi__fail(DVI_NOT_FINITE, "avi: the longest stable step of cell %lld is %g",
-                       (long long)c, plan->bound[c]);
+                       (long long)dvi__whole_number(e->mesh, e->n, c), plan->bound[c]);
     if (plan->bound[c] < plan->tightest) plan->tightest_cell = c;
     plan->tightest = fmin(plan->tightest, plan->bound[c]);
   }

@@ -137,8 +137,10 @@ static dvi_status kick_all(dvi__solid_avi *avi, double t)
   return DVI_OK;
 }
 
+/* A march that has lost the values of other processes has them again. */
 dvi_status dvi__solid_avi_start(dvi__solid_avi *avi, double t, const double *u, const double *rate)
 {
+  const int was_lost = avi->is_lost;
   DVI_TRY(check(avi, t, u, rate));
   dvi__solid_keep(avi);
   take_values(avi, t);
@@ -147,10 +149,12 @@ dvi_status dvi__solid_avi_start(dvi__solid_avi *avi, double t, const double *u, 
                                   .start_energy = avi->view->energies.kinetic +
                                                   avi->view->energies.stored,
                                   .allowed = avi->band};
+  avi->is_lost = 0;
   dvi_status status = dvi__agree(avi->solid->mesh, kick_all(avi, t));
   if (status == DVI_OK) status = dvi__solid_complete(avi);
   if (status != DVI_OK) {
     dvi__solid_take_back(avi);
+    avi->is_lost = was_lost;
     return status;
   }
   dvi__solid_keep(avi);

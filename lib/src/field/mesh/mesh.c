@@ -24,27 +24,29 @@ const char *dvi__degree_name(dvi_cell_kind kind, int k)
   return name[kind == DVI_BOXES][k];
 }
 
-/* Name a cell by its number and its first vertices. */
-static dvi__cell_name name_by_vertices(dvi_cell_kind kind, int k, int64_t cell, const int *vertex)
+/* Name a cell by its number and its first vertices, as the whole mesh has them. */
+static dvi__cell_name name_by_vertices(const dvi_mesh *mesh, int k, int64_t cell)
 {
   dvi__cell_name name;
-  const int count = dvi__corners(kind, k), shown = count < 5 ? count : 4;
+  const int count = dvi__corners(mesh->kind, k), shown = count < 5 ? count : 4,
+            *vertex = mesh->corner[k] + cell * count;
   size_t at = 0;
-  at += (size_t)snprintf(name.text, sizeof name.text, "%s %lld (vert%s", dvi__degree_name(kind, k),
-                         (long long)cell, count > 1 ? "ices" : "ex");
+  at += (size_t)snprintf(name.text, sizeof name.text, "%s %lld (vert%s",
+                         dvi__degree_name(mesh->kind, k),
+                         (long long)dvi__whole_number(mesh, k, cell), count > 1 ? "ices" : "ex");
   for (int c = 0; c < shown; c++)
-    at += (size_t)snprintf(name.text + at, sizeof name.text - at, " %d", vertex[c]);
+    at += (size_t)snprintf(name.text + at, sizeof name.text - at, " %lld",
+                           (long long)dvi__whole_number(mesh, 0, vertex[c]));
   (void)snprintf(name.text + at, sizeof name.text - at, "%s)", shown < count ? " .." : "");
   return name;
 }
 
 dvi__cell_name dvi__name_cell(const dvi_mesh *mesh, int k, int64_t cell)
 {
-  const int *corner = mesh->corner[k];
   dvi__cell_name name;
-  if (corner != NULL)
-    return name_by_vertices(mesh->kind, k, cell, corner + cell * dvi__corners(mesh->kind, k));
-  (void)snprintf(name.text, sizeof name.text, "vertex %lld", (long long)cell);
+  if (mesh->corner[k] != NULL) return name_by_vertices(mesh, k, cell);
+  (void)snprintf(name.text, sizeof name.text, "vertex %lld",
+                 (long long)dvi__whole_number(mesh, 0, cell));
   return name;
 }
 

@@ -5,6 +5,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "field/mesh/share.h"
 
 /* What the eigenvalues of (k+1)-cells alone consist of. */
 typedef struct local_terms {
@@ -30,10 +31,10 @@ static double local_square(const local_terms *terms, int64_t f)
   return stiffness * sum;
 }
 
-static dvi_status find_stiffest(const dvi_field *field, int64_t *stiffest)
+/* Find the own cell with the largest eigenvalue by itself. */
+static dvi_status find_stiffest(const dvi_field *field, int64_t *stiffest, double *most)
 {
   local_terms terms = {.field = field};
-  double most = -1;
   *stiffest = 0;
   DVI_TRY(dvi_mesh_incidence(field->mesh, field->degree, &terms.d));
   DVI_TRY(dvi_star_matrix(field->star, field->degree + 1, &terms.M2));
@@ -41,20 +42,19 @@ static dvi_status find_stiffest(const dvi_field *field, int64_t *stiffest)
   if (terms.sharing == NULL) return dvi__fail(DVI_NO_MEMORY, "march: no memory for a sentence");
   for (int64_t i = 0; i < terms.d.rows * terms.d.width; i++) terms.sharing[terms.d.column[i]]++;
   for (int64_t f = 0; f < terms.d.rows; f++) {
-    const double square = local_square(&terms, f);
-    if (!(square > most)) continue;
-    most = square;
+    const double square = dvi__owns(field->mesh, field->degree + 1, f) ? local_square(&terms, f)
+                                                                       : -1;
+    if (!(square > *most)) continue;
+    *most = square;
     *stiffest = f;
   }
   dvi__release(terms.sharing);
   return DVI_OK;
 }
 
-static dvi_status refuse_step(const dvi_field *field, double step, double bound)
+static dvi_status name_stiffest(const dvi_field *field, int64_t cell, double step, double bound)
 {
   const int degree = field->degree + 1;
-  int64_t cell;
-  DVI_TRY(find_stiffest(field, &cell));
   const dvi__cell_name name = dvi__name_cell(field->mesh, degree, cell);
   const int vertex = field->mesh->corner[degree][cell * dvi__corners(field->mesh->kind, degree)];
   const double *x = field->mesh->point + (int64_t)vertex * field->mesh->space;
@@ -63,6 +63,22 @@ static dvi_status refuse_step(const dvi_field *field, double step, double bound)
                    "%g, %g): take a shorter step, avi, or a mesh without such cells",
                    step, bound, name.text, x[0], field->mesh->space > 1 ? x[1] : 0.0,
                    field->mesh->space > 2 ? x[2] : 0.0);
+}
+
+/* The process that owns the first of the stiffest cells of the whole mesh names it. */
+static dvi_status refuse_step(const dvi_field *field, double step, double bound)
+{
+  const dvi_mesh *mesh = field->mesh;
+  int64_t cell;
+  double most = -1, of_all, first;
+  DVI_TRY(dvi__agree(mesh, find_stiffest(field, &cell, &most)));
+  of_all = most;
+  DVI_TRY(dvi__largest_of_all(mesh, 1, &of_all));
+  const double number = most == of_all ? -(double)dvi__whole_number(mesh, field->degree + 1, cell)
+                                       : -(double)INFINITY;
+  first = number;
+  DVI_TRY(dvi__largest_of_all(mesh, 1, &first));
+  return dvi__agree(mesh, number == first ? name_stiffest(field, cell, step, bound) : DVI_OK);
 }
 
 dvi_status dvi__choose_step(const dvi_field *field, const dvi__march_plan *plan, double *step,

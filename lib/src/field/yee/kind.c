@@ -70,8 +70,9 @@ static dvi_status choose_step(const dvi_yee_terms *terms, dvi__yee *y)
 }
 
 /* Make what the bound of the step needs. */
-static dvi_status make_planes_and_media(const dvi_yee_terms *terms, dvi__yee *y)
+static dvi_status make_grid_and_media(const dvi_yee_terms *terms, dvi__yee *y)
 {
+  DVI_TRY(dvi__yee_make_grid(terms, y));
   DVI_TRY(dvi__yee_make_planes(terms, y));
   if (y->unknowns == 0)
     return dvi__fail(
@@ -96,11 +97,9 @@ static dvi_status make_march(const dvi_yee_terms *terms, dvi__yee *y)
   return dvi__yee_make_observables(terms, y);
 }
 
-/* Processes agree before they speak about the bound, and at the end. */
+/* Processes have agreed on what the bound needs before they speak about it. */
 static dvi_status make(const dvi_yee_terms *terms, dvi__yee *y)
 {
-  DVI_TRY(dvi__yee_make_grid(terms, y));
-  DVI_TRY(dvi__yee_agree(y, make_planes_and_media(terms, y)));
   DVI_TRY(choose_step(terms, y));
   return dvi__yee_agree(y, make_march(terms, y));
 }
@@ -185,9 +184,15 @@ dvi_status dvi_yee_create(const dvi_yee_terms *terms, dvi_march **march)
   if (march == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "yee: a place for the march is needed");
   *march = NULL;
   dvi__yee *y = DVI_NEW(dvi__yee, 1);
-  if (y == NULL) return dvi__fail(DVI_NO_MEMORY, "yee: no memory");
-  const dvi_status status = make(terms, y);
-  if (status == DVI_OK) return dvi__march_wrap(&yee_kind, y, march);
-  destroy(y);
+  dvi_status status = y != NULL ? make_grid_and_media(terms, y)
+                                : dvi__fail(DVI_NO_MEMORY, "yee: no memory");
+  status = dvi__yee_agree_of(terms, status);
+  if (status == DVI_OK && y != NULL) status = make(terms, y);
+  if (status != DVI_OK) {
+    if (y != NULL) destroy(y);
+    return status;
+  }
+  status = dvi__yee_agree_of(terms, dvi__march_wrap(&yee_kind, y, march));
+  if (status != DVI_OK) dvi_march_destroy(march);
   return status;
 }

@@ -35,10 +35,11 @@ double *dvi__yee_plane_sent(const dvi__yee *yee);
 const double *dvi__yee_pass_plane(const dvi__yee *yee, int is_moment);
 /* Give the place of a component, of a copy, in such a plane. */
 size_t dvi__yee_at_plane(const dvi__yee *yee, int component, int copy, const int *place);
-/* Fail on all processes, with the same status, if one of them has failed. The latter speaks even
- * after a failure to speak. */
+/* Fail on all processes, with the same status, if one of them has failed. The second one speaks
+ * even after a failure to speak, and the last one where a process may have no grid. */
 dvi_status dvi__yee_agree(const dvi__yee *yee, dvi_status status);
 dvi_status dvi__yee_agree_anew(const void *yee, dvi_status status);
+dvi_status dvi__yee_agree_of(const dvi_yee_terms *terms, dvi_status status);
 /* Give the sum of all processes, rounded once, and replace numbers by the largest of all. */
 double dvi__yee_sum_of_all(const dvi__yee *yee, dvi__accumulator *sum);
 void dvi__yee_largest_of_all(const dvi__yee *yee, int count, double *number);
