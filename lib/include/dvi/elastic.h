@@ -124,14 +124,14 @@ typedef struct dvi_elastic_energies {
 extern "C" {
 #endif
 
-/** Create a solid.
+/** Create a solid. On the share of a mesh (dvi_mesh_cut) all processes create it.
  *
  *  @retval DVI_BAD_ARGUMENT     a cell has no material, a constant is out of its range, a part is
  *                               missing, all is held, all of a load on facets acts on what is held,
  *                               or an argument is not as described.
  *                               dvi_last_error() names the material, the part or the cell
  *  @retval DVI_UNSUPPORTED      the mesh has no triangles in a plane or tetrahedra in space, or
- *                               repeats itself
+ *                               repeats itself, or is a share, and there are obstacles
  *  @retval DVI_CALLBACK_FAILED  a stored energy, a displacement or a load failed
  *  @retval DVI_NOT_FINITE       one of them is not finite
  *  @retval DVI_NO_MEMORY        there is no memory */
@@ -168,6 +168,7 @@ void dvi_elastic_project(const dvi_elastic *elastic, const double *u, const doub
                          double *v, double *p);
 
 /** Give the energies of displacements u and rates [vertices*n] at time t, in a part of n-cells.
+ *  All processes that share the solid call it, and have the energies of the whole one.
  *
  *  @param rate  may be NULL for 0
  *  @param part  the part. NULL for all of the solid
