@@ -247,7 +247,7 @@ static dvi_status read_part(const dvi__mesh_reader *r, dvi_mesh *share, int p,
   dvi_status status = dvi__slabs_read_text(r->file, dvi__part_path(path, p, "/name"), sizeof name,
                                            name);
   if (status == DVI_OK && (strcmp(name, "boundary") == 0) != (p == 1))
-    status = dvi__slabs_refuse(r->file, "part %d has the name \"%s\"", p, name);
+    status = dvi__slabs_refuse(r->file, "part %d is not \"boundary\", as part 1 is alone", p);
   if (status == DVI_OK) status = read_degree(r, p, &part);
   status = dvi__world_agree(r->world, status);
   for (int k = 0; k <= part.degree && status == DVI_OK; k++)
