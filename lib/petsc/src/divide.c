@@ -203,6 +203,22 @@ dvi_status dvi_mesh_partition(const dvi_mesh *mesh, const dvi_division_options *
   return status;
 }
 
+/* Join the others before anything can fail here alone: memory is agreed on with them. */
+static dvi_status begin(const dvi_division_options *options, dvi_division **made)
+{
+  dvi__world world = {.comm = MPI_COMM_NULL};
+  DVI_TRY(dvi__world_join(options != NULL ? options->comm : MPI_COMM_NULL, &world));
+  *made = DVI_NEW(dvi_division, 1);
+  if (*made == NULL) {
+    const dvi_status status = dvi__world_agree(&world,
+                                               dvi__fail(DVI_NO_MEMORY, "petsc: no memory"));
+    dvi__world_leave(&world);
+    return status;
+  }
+  (*made)->world = world;
+  return dvi__world_agree(&world, DVI_OK);
+}
+
 dvi_status dvi_mesh_divide(const dvi_mesh *mesh, const dvi_division_options *options,
                            dvi_mesh **share, dvi_division **division)
 {
@@ -211,17 +227,14 @@ dvi_status dvi_mesh_divide(const dvi_mesh *mesh, const dvi_division_options *opt
   *share = NULL;
   *division = NULL;
   DVI_TRY(check_options(options));
-  dvi_division *made = DVI_NEW(dvi_division, 1);
-  if (made == NULL) return dvi__fail(DVI_NO_MEMORY, "petsc: no memory");
-  made->world.comm = MPI_COMM_NULL;
+  dvi_division *made = NULL;
   /* The sentence is the library's, and PETSc prints none. */
   (void)PetscPushErrorHandler(PetscReturnErrorHandler, NULL);
-  dvi_status status = choose(options, made);
-  if (status == DVI_OK)
-    status = dvi__world_join(options != NULL ? options->comm : MPI_COMM_NULL, &made->world);
-  if (status == DVI_OK) status = make(mesh, made, share);
+  dvi_status status = begin(options, &made);
+  if (status == DVI_OK && made != NULL) status = choose(options, made);
+  if (status == DVI_OK && made != NULL) status = make(mesh, made, share);
   (void)PetscPopErrorHandler();
-  if (status == DVI_OK) made->share = *share;
+  if (status == DVI_OK && made != NULL) made->share = *share;
   if (status != DVI_OK) {
     dvi_mesh_destroy(share);
     dvi_division_destroy(&made);

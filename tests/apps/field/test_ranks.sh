@@ -106,6 +106,10 @@ else
   grep -q '^dvi: .*SLEPc' err.txt || wrong "modes of two processes: $(cat err.txt)"
 fi
 
+mpirun -np 2 "$dvi" modes box.yaml --vtu modes.vtu >out.txt 2>err.txt
+[ $? -eq 2 ] || wrong "modes --vtu: no exit code 2"
+grep -q '^dvi: modes: --vtu needs the whole mesh' err.txt || wrong "modes --vtu: $(cat err.txt)"
+
 # A step is measured on processes that dvi starts, and predicted for more of them.
 "$dvi" bench torus.yaml --scale ranks=1,2,4,...,300 --rounds 1 --steps 2 --csv scale.csv \
   >out.txt || wrong "bench: no scaling"
