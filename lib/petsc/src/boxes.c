@@ -38,16 +38,21 @@ dvi_status dvi_yee_ranks_create(MPI_Comm comm, dvi_yee_ranks **ranks)
   *ranks = NULL;
   (void)MPI_Initialized(&is_started);
   if (!is_started) return dvi__fail(DVI_BAD_ARGUMENT, "petsc: start MPI before grids are divided");
+  /* join the others before memory can fail here alone, so that it is agreed on */
+  dvi__world joined;
+  DVI_TRY(dvi__world_join(comm, &joined));
   dvi__world *world = DVI_NEW(dvi__world, 1);
   dvi_yee_ranks *r = DVI_NEW(dvi_yee_ranks, 1);
-  dvi_status status = world != NULL && r != NULL ? DVI_OK
-                                                 : dvi__fail(DVI_NO_MEMORY, "petsc: no memory");
-  if (status == DVI_OK) status = dvi__world_join(comm, world);
-  if (status != DVI_OK) {
+  const int has_memory = world != NULL && r != NULL;
+  const dvi_status status = dvi__world_agree(
+      &joined, has_memory ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "petsc: no memory"));
+  if (status != DVI_OK || !has_memory) {
+    dvi__world_leave(&joined);
     dvi__release(world);
     dvi__release(r);
     return status;
   }
+  *world = joined;
   *r = (dvi_yee_ranks){.size = sizeof *r,
                        .rank = world->rank,
                        .count = world->count,

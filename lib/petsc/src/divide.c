@@ -201,15 +201,27 @@ static dvi_status check_options(const dvi_division_options *options)
   return dvi__fail(DVI_BAD_ARGUMENT, "petsc: set options.size to sizeof(dvi_division_options)");
 }
 
+/* Join the others before anything can fail here alone: memory is agreed on with them. */
+static dvi_status take_place(const dvi_division_options *options, dvi_division **made)
+{
+  dvi__world world = {.comm = MPI_COMM_NULL};
+  DVI_TRY(dvi__world_join(options != NULL ? options->comm : MPI_COMM_NULL, &world));
+  *made = DVI_NEW(dvi_division, 1);
+  if (*made == NULL) {
+    const dvi_status status = dvi__world_agree(&world,
+                                               dvi__fail(DVI_NO_MEMORY, "petsc: no memory"));
+    dvi__world_leave(&world);
+    return status;
+  }
+  (*made)->world = world;
+  return dvi__world_agree(&world, DVI_OK);
+}
+
 dvi_status dvi__division_begin(const dvi_division_options *options, dvi_division **division)
 {
   DVI_TRY(check_options(options));
-  dvi_division *made = DVI_NEW(dvi_division, 1);
-  if (made == NULL) return dvi__fail(DVI_NO_MEMORY, "petsc: no memory");
-  made->world.comm = MPI_COMM_NULL;
-  *division = made;
-  DVI_TRY(choose(options, made));
-  return dvi__world_join(options != NULL ? options->comm : MPI_COMM_NULL, &made->world);
+  DVI_TRY(take_place(options, division));
+  return choose(options, *division);
 }
 
 dvi_status dvi_mesh_partition(const dvi_mesh *mesh, const dvi_division_options *options, int parts,
@@ -241,9 +253,9 @@ dvi_status dvi_mesh_divide(const dvi_mesh *mesh, const dvi_division_options *opt
   *share = NULL;
   *division = NULL;
   dvi_division *made = NULL;
-  dvi_status status = dvi__division_begin(options, &made);
   /* The sentence is the library's, and PETSc prints none. */
   (void)PetscPushErrorHandler(PetscReturnErrorHandler, NULL);
+  dvi_status status = dvi__division_begin(options, &made);
   if (status == DVI_OK && made != NULL) status = make(mesh, made, share);
   (void)PetscPopErrorHandler();
   if (status != DVI_OK) {
