@@ -195,7 +195,8 @@ int scene_open(const char *path, const words *settings, problem **scene)
   dvi_scene *read = NULL;
   *scene = NULL;
   if (is_folder(path)) return refuse_folder(path);
-  const dvi_scene_division division = {.size = sizeof division, .divide = ranks_divide};
+  const dvi_scene_division division = {
+      .size = sizeof division, .divide = ranks_divide, .grid = ranks_grid()};
   const dvi_status status =
       ranks_count() > 1
           ? dvi_scene_read_share(path, &division, settings->count, settings->word, &read, message,

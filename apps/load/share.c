@@ -12,17 +12,19 @@
 
 enum { RANKS_SHOWN = 16 };
 
-int share_check(const char *command, const problem *scene, const char *method)
+int share_check(const char *command, const problem *scene, const char *method, bool grids)
 {
   if (scene->scene == NULL || !dvi_scene_marches(scene->scene, "leapfrog"))
     return usage_error("%s: %d processes share a scene of waves or of Maxwell's field on a mesh, "
                        "and %s is none; leave mpirun out",
                        command, ranks_count(), scene->name);
   if (method == NULL) method = scene->method;
+  if (grids && method != NULL && strcmp(method, "yee") == 0) return DONE;
   if (method != NULL && strcmp(method, "leapfrog") == 0) return DONE;
-  return usage_error("%s: %d processes share leapfrog alone, not %s; give --method leapfrog, or "
-                     "leave mpirun out",
-                     command, ranks_count(), method != NULL ? method : "another method");
+  return usage_error("%s: %d processes share leapfrog%s alone, not %s; give --method leapfrog, "
+                     "or leave mpirun out",
+                     command, ranks_count(), grids ? " and yee" : "",
+                     method != NULL ? method : "another method");
 }
 
 static const table_column columns[] = {

@@ -165,6 +165,11 @@ dvi_status ranks_divide(const dvi_mesh *mesh, dvi_mesh **share, void *user)
   return module->divide(mesh, share);
 }
 
+const dvi_yee_ranks *ranks_grid(void)
+{
+  return module != NULL ? module->grid() : NULL;
+}
+
 void ranks_tell(int rank, int degree, mesh_division *division)
 {
   module->tell(rank, degree, division);

@@ -31,6 +31,10 @@ void ranks_remedy(const char *remedy);
 /** Divide a mesh, as the callback of dvi_scene_division. */
 dvi_status ranks_divide(const dvi_mesh *mesh, dvi_mesh **share, void *user);
 
+/** Give what divides grids among the processes, NULL without others or if that failed. Called by
+ *  all. */
+const dvi_yee_ranks *ranks_grid(void);
+
 /** Give the share of process `rank`, of forms of a degree. Called by all processes. */
 void ranks_tell(int rank, int degree, mesh_division *division);
 

@@ -13,6 +13,7 @@
 enum { PATIENCE = 2000, PAUSE = 5 }; /* milliseconds */
 
 static dvi_division *division;
+static dvi_yee_ranks *planes;
 /* What all processes do together. It stays pending if this one gives up and ends the others. */
 static MPI_Request pending = MPI_REQUEST_NULL;
 static MPI_Win common = MPI_WIN_NULL; /* memory of one machine */
@@ -64,6 +65,12 @@ static dvi_status divide(const dvi_mesh *mesh, dvi_mesh **share)
   return dvi_mesh_divide(mesh, NULL, share, &division);
 }
 
+static const dvi_yee_ranks *grid(void)
+{
+  if (planes == NULL) (void)dvi_yee_ranks_create(MPI_COMM_WORLD, &planes);
+  return planes;
+}
+
 static void tell(int rank, int degree, mesh_division *told)
 {
   dvi_division_facts facts = {.partitioner = ""};
@@ -111,6 +118,7 @@ static bool meet(const rank_end *own, rank_end *all)
 static void end(void)
 {
   dvi_division_destroy(&division);
+  dvi_yee_ranks_destroy(&planes);
   if (common != MPI_WIN_NULL) (void)MPI_Win_free(&common);
   (void)PetscPopErrorHandler();
   (void)PetscFinalize();
@@ -126,6 +134,7 @@ const petsc_module dvi_petsc = {
     .share_memory = share_memory,
     .wait_for_all = wait_for_all,
     .divide = divide,
+    .grid = grid,
     .tell = tell,
     .largest = largest,
     .meet = meet,

@@ -5,6 +5,7 @@
 #ifndef PETSC_MODULE_H
 #define PETSC_MODULE_H
 #include <dvi/mesh.h>
+#include <dvi/yee.h>
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -39,6 +40,10 @@ typedef struct petsc_module {
   /** Divide a mesh among all processes. The share is for dvi_mesh_destroy before the end. One mesh
    *  can be divided at a time. */
   dvi_status (*divide)(const dvi_mesh *mesh, dvi_mesh **share);
+
+  /** Give what divides grids among all processes, until the end. Called by all. NULL if that
+   *  failed. */
+  const dvi_yee_ranks *(*grid)(void);
 
   /** Give the division of process `rank`, with the bytes that a form of a degree receives. Called
    *  by all processes. */

@@ -14,6 +14,11 @@ modules=$(dirname "$dvi")
 
 as_one 3 torus.yaml --columns energy,gauss,e
 as_one 4 box.yaml --every 5
+as_one 2 probes.yaml
+as_one 4 grid.yaml
+sed 's/{cpml: 2}/absorbing/; s/s: .*/s: {of: B, at: [0.9, 0.9, 0.9], along: [0, 0, 1]}/' grid.yaml \
+  >walls.yaml
+as_one 3 walls.yaml --columns energy,gauss,charge,divergence,e,s
 by 2 wave.yaml >all.csv || fail "no rows on standard output"
 by 1 wave.yaml >one.csv
 same one.csv all.csv "standard output"
@@ -62,6 +67,7 @@ every_way() {
   goes_on 3 2 "$@"
 }
 every_way wave.yaml --h 0.002 --every 4
+every_way grid.yaml --h 0.01 --every 5
 every_way torus.yaml --h 0.004 --every 5
 together 1 'cannot read' wave.yaml --resume nowhere
 together 2 'half.state. stands at t = ' torus.yaml --h 0.004 --t-end 0.1 --resume half.state
@@ -115,9 +121,12 @@ says err '^dvi: run: signal 15 ended the run at t' 'a signal to mpirun'
 
 # ---- refusals ----
 
-together 2 'leapfrog alone, not verlet' wave.yaml --method verlet
+together 2 'leapfrog and yee alone, not verlet' wave.yaml --method verlet
 sed 's/exp(/sqrt(x - 0.5)*exp(/' wave.yaml >nan.yaml
+sed 's/0.9, 0.13/3, 4/' probes.yaml >outside.yaml
 together 2 'the start is not finite at vertex' nan.yaml # on one process, on which the others wait
+together 2 '--method yee: several processes share yee on grids' wave.yaml --method yee
+together 2 "the probe 'b' is outside of the mesh" outside.yaml
 together 1 "cannot write '/nowhere/rows.csv'" wave.yaml --out /nowhere/rows.csv
 together 1 "cannot write '/nowhere/state'" wave.yaml --checkpoint /nowhere/state
 exit $((failures > 0))

@@ -28,7 +28,8 @@ if [ ! -e "$(dirname "$dvi")/dvi_petsc.so" ]; then
   echo "DVI_PETSC is OFF: no tests with MPI"
   exit 77
 fi
-as_one 3 wave.yaml
+as_one 3 probes.yaml
+as_one 2 grid.yaml
 together 2 'kepler is none' kepler
 killed 3 1 2
 exit $((failures > 0))
