@@ -12,19 +12,27 @@
 
 enum { RANKS_SHOWN = 16 };
 
-int share_check(const char *command, const problem *scene, const char *method, bool grids)
+int share_check(const char *command, const problem *scene, const char *method, bool takes_all)
 {
-  if (scene->scene == NULL || !dvi_scene_marches(scene->scene, "leapfrog"))
-    return usage_error("%s: %d processes share a scene of waves or of Maxwell's field on a mesh, "
-                       "and %s is none; leave mpirun out",
-                       command, ranks_count(), scene->name);
+  const bool is_solid = takes_all && scene->scene != NULL &&
+                        dvi_scene_elastic(scene->scene) != NULL;
+  if (scene->scene == NULL || !(is_solid || dvi_scene_marches(scene->scene, "leapfrog")))
+    return usage_error("%s: %d processes share a scene of waves%s Maxwell's field%s on a mesh, and "
+                       "%s is none; leave mpirun out",
+                       command, ranks_count(), takes_all ? ", of" : " or of",
+                       takes_all ? " or of a solid" : "", scene->name);
   if (method == NULL) method = scene->method;
-  if (grids && method != NULL && strcmp(method, "yee") == 0) return DONE;
-  if (method != NULL && strcmp(method, "leapfrog") == 0) return DONE;
-  return usage_error("%s: %d processes share leapfrog%s alone, not %s; give --method leapfrog, "
-                     "or leave mpirun out",
-                     command, ranks_count(), grids ? " and yee" : "",
-                     method != NULL ? method : "another method");
+  if (takes_all && !is_solid && method != NULL && strcmp(method, "yee") == 0) return DONE;
+  if (method != NULL &&
+      (is_solid ? dvi_scene_marches(scene->scene, method) : strcmp(method, "leapfrog") == 0))
+    return DONE;
+  return usage_error("%s: %d processes share %s alone, not %s; give --method %s, or leave mpirun "
+                     "out",
+                     command, ranks_count(),
+                     is_solid    ? "avi and verlet"
+                     : takes_all ? "leapfrog and yee"
+                                 : "leapfrog",
+                     method != NULL ? method : "another method", is_solid ? "avi" : "leapfrog");
 }
 
 static const table_column columns[] = {

@@ -5,9 +5,10 @@
 
 #include "problem.h"
 
-/** Check that several processes can share a scene, by leapfrog, and with `grids` by yee. `method` is
- * NULL for the scene's own. Returns DONE, or complains and returns USAGE. */
-int share_check(const char *command, const problem *scene, const char *method, bool grids);
+/** Check that several processes can share a scene, by leapfrog, or, if the command takes all that
+ * processes share, by yee, and of a solid by avi and verlet. `method` is NULL for the scene's own.
+ * Returns DONE, or complains and returns USAGE. */
+int share_check(const char *command, const problem *scene, const char *method, bool takes_all);
 
 /** Print how the processes share the mesh, and what a step makes them exchange. Called by all of
  * them, with `csv` as the path of a table, "-" for standard output or NULL. Returns DONE, or

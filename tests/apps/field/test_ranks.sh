@@ -24,6 +24,7 @@ alone() {
 }
 if [ ! -e "$(dirname "$dvi")/dvi_petsc.so" ]; then
   alone 'this dvi has no module for them'
+  said=$("$dvi" bench wave.yaml --scale ranks=1,2 2>&1) && fail "ranks without a module: $said"
   [ $failures -eq 0 ] || exit 1
   echo "DVI_PETSC is OFF: no tests with MPI"
   exit 77

@@ -60,7 +60,7 @@ bool dvi__field_integral_make(dvi_scene *scene, dvi__field_integral *integral);
 int dvi__field_integral_value(double t, const double *q, const double *p, double *value,
                               void *user);
 
-/* Give dvi_field_sum as a callback of an invariant does, whose caller looks whether it is finite. */
+/* Give dvi_field_sum as a callback of an invariant does, whose caller looks if it is finite. */
 int dvi__field_sum_value(const dvi_field *field, int64_t count, const int *cell,
                          dvi_field_term *term, void *user, double *value);
 
