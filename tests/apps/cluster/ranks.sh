@@ -16,8 +16,8 @@ as_one 3 torus.yaml --columns energy,gauss,e
 as_one 4 box.yaml --every 5
 as_one 2 probes.yaml
 as_one 4 grid.yaml
-sed 's/{cpml: 2}/absorbing/; s/^  s: .*/  s: {of: B, at: [0.9, 0.9, 0.9], along: [0, 0, 1]}/' grid.yaml \
-  >walls.yaml
+sed -e 's/{cpml: 2}/absorbing/' \
+  -e 's/^  s: .*/  s: {of: B, at: [0.9, 0.9, 0.9], along: [0, 0, 1]}/' grid.yaml >walls.yaml
 as_one 3 walls.yaml --columns energy,gauss,charge,divergence,e,s
 by 2 wave.yaml >all.csv || fail "no rows on standard output"
 by 1 wave.yaml >one.csv
