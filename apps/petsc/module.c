@@ -144,11 +144,10 @@ static bool among(int count, bool *takes_part)
 static bool rest(int number, int *all)
 {
   const struct timespec pause = {.tv_nsec = PAUSE * 1000000L};
-  MPI_Request request;
   int met = 0;
-  if (MPI_Iallreduce(&number, all, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD, &request) != MPI_SUCCESS)
+  if (MPI_Iallreduce(&number, all, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD, &pending) != MPI_SUCCESS)
     return false;
-  while (MPI_Test(&request, &met, MPI_STATUS_IGNORE) == MPI_SUCCESS && !met)
+  while (MPI_Test(&pending, &met, MPI_STATUS_IGNORE) == MPI_SUCCESS && !met)
     (void)nanosleep(&pause, NULL);
   return met;
 }

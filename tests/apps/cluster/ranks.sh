@@ -148,6 +148,8 @@ says err '^dvi: run: signal 15 ended the run at t' 'a signal to mpirun'
 
 # ---- refusals ----
 
+alone 'MPI knows of 1'
+together 2 'kepler is none' kepler
 together 2 'leapfrog and yee alone, not verlet' wave.yaml --method verlet
 sed 's/exp(/sqrt(x - 0.5)*exp(/' wave.yaml >nan.yaml
 sed 's/0.9, 0.13/3, 4/' probes.yaml >outside.yaml

@@ -135,3 +135,18 @@ killed() {
   same rest whole "rank $2 of $1 is killed, and $3 go on"
   [ "$(wc -l <rest)" -ge 40 ] || fail "the rest has too few rows"
 }
+
+# started RANK: run as if two processes had been started.
+started() { OMPI_COMM_WORLD_SIZE=2 OMPI_COMM_WORLD_RANK=$1 "$dvi" run wave.yaml 2>&1; }
+
+# alone WORDS: processes without mpirun refuse to run the same twice, and the first one says why.
+alone() {
+  said=$(started 0)
+  [ $? -eq 2 ] || fail "two processes without mpirun: no exit code 2"
+  case $said in
+    "dvi: 2 processes were started, and $1"*) ;;
+    *) fail "two processes without mpirun: $said" ;;
+  esac
+  said=$(started 1) || fail "the second process without mpirun fails"
+  [ -z "$said" ] || fail "the second process without mpirun says: $said"
+}
