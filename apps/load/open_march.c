@@ -10,6 +10,7 @@
 #include "load/elastic.h"
 #include "load/field.h"
 #include "load/open.h"
+#include "module/ranks.h"
 
 enum { MESSAGE_SIZE = 2048 };
 
@@ -118,6 +119,12 @@ static int refuse(dvi_status status, const problem *scene, const dvi_march_optio
     section = "damping";
     sentence = "marches of fields have no damping; a conductor has 'sigma', and mechanical methods "
                "such as verlet take the friction";
+  } else if (status == DVI_UNSUPPORTED && ranks_count() > 1 && strcmp(method, "yee") == 0 &&
+             strncmp(sentence, "yee", 3) != 0) {
+    sentence = "several processes share yee on grids alone, without probes of parts and a start by "
+               "A: take leapfrog, or leave mpirun out";
+    if (options->method != NULL) return usage_error("--method yee: %s", sentence);
+    section = "method";
   } else if (status == DVI_UNSUPPORTED && is_yee_on_mesh(scene, method)) {
     section = "star";
     sentence = "yee has no star: leave it out, or take leapfrog";

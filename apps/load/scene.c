@@ -207,7 +207,7 @@ int scene_open_share(const char *path, const words *settings, const dvi_scene_di
 int scene_open(const char *path, const words *settings, problem **scene)
 {
   const dvi_scene_division division = {
-      .size = sizeof division, .divide = ranks_divide, .read = ranks_read};
+      .size = sizeof division, .divide = ranks_divide, .read = ranks_read, .grid = ranks_grid()};
   return scene_open_share(path, settings, ranks_count() > 1 ? &division : NULL, scene);
 }
 

@@ -14,22 +14,26 @@
 
 enum { RANKS_SHOWN = 16, HOW_SIZE = 64 };
 
-int share_check(const char *command, const problem *scene, const char *method, bool takes_solids)
+int share_check(const char *command, const problem *scene, const char *method, bool takes_all)
 {
-  const bool is_solid = takes_solids && scene->scene != NULL &&
+  const bool is_solid = takes_all && scene->scene != NULL &&
                         dvi_scene_elastic(scene->scene) != NULL;
   if (scene->scene == NULL || !(is_solid || dvi_scene_marches(scene->scene, "leapfrog")))
     return usage_error("%s: %d processes share a scene of waves%s Maxwell's field%s on a mesh, and "
                        "%s is none; leave mpirun out",
-                       command, ranks_count(), takes_solids ? ", of" : " or of",
-                       takes_solids ? " or of a solid" : "", scene->name);
+                       command, ranks_count(), takes_all ? ", of" : " or of",
+                       takes_all ? " or of a solid" : "", scene->name);
   if (method == NULL) method = scene->method;
+  if (takes_all && !is_solid && method != NULL && strcmp(method, "yee") == 0) return DONE;
   if (method != NULL &&
       (is_solid ? dvi_scene_marches(scene->scene, method) : strcmp(method, "leapfrog") == 0))
     return DONE;
   return usage_error("%s: %d processes share %s alone, not %s; give --method %s, or leave mpirun "
                      "out",
-                     command, ranks_count(), is_solid ? "avi and verlet" : "leapfrog",
+                     command, ranks_count(),
+                     is_solid    ? "avi and verlet"
+                     : takes_all ? "leapfrog and yee"
+                                 : "leapfrog",
                      method != NULL ? method : "another method", is_solid ? "avi" : "leapfrog");
 }
 

@@ -5,10 +5,10 @@
 
 #include "problem.h"
 
-/** Check that several processes can share a scene, by leapfrog, or of a solid, if the command takes
- * it, by avi and verlet. `method` is NULL for the scene's own. Returns DONE, or complains and
- * returns USAGE. */
-int share_check(const char *command, const problem *scene, const char *method, bool takes_solids);
+/** Check that several processes can share a scene, by leapfrog, or, if the command takes all that
+ * processes share, by yee, and of a solid by avi and verlet. `method` is NULL for the scene's own.
+ * Returns DONE, or complains and returns USAGE. */
+int share_check(const char *command, const problem *scene, const char *method, bool takes_all);
 
 /** Print how the processes share the mesh, and what a step makes them exchange. Called by all of
  * them, with `csv` as the path of a table, "-" for standard output or NULL. Returns DONE, or

@@ -222,6 +222,11 @@ int ranks_write_mesh(const dvi_mesh *mesh, const char *path)
   return status == DVI_OK ? DONE : library_error(status);
 }
 
+const dvi_yee_ranks *ranks_grid(void)
+{
+  return module != NULL ? module->grid() : NULL;
+}
+
 void ranks_tell(int rank, int degree, mesh_division *division)
 {
   module->tell(rank, degree, division);

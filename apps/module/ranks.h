@@ -47,6 +47,10 @@ dvi_status ranks_read(const char *path, dvi_mesh **share, void *user);
 /** Write a mesh to such a file. Returns DONE, or complains and returns the exit code. */
 int ranks_write_mesh(const dvi_mesh *mesh, const char *path);
 
+/** Give what divides grids among the processes, NULL without others or if that failed. Called by
+ *  all. */
+const dvi_yee_ranks *ranks_grid(void);
+
 /** Give the share of process `rank`, of forms of a degree. Called by all processes. */
 void ranks_tell(int rank, int degree, mesh_division *division);
 

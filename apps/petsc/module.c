@@ -14,10 +14,11 @@
 enum { PATIENCE = 2000, PAUSE = 5 }; /* milliseconds */
 
 static dvi_division *division;
-static MPI_Comm workers = MPI_COMM_WORLD; /* the processes among which there is work */
+static dvi_yee_ranks *planes;
 /* What all processes do together. It stays pending if this one gives up and ends the others. */
 static MPI_Request pending = MPI_REQUEST_NULL;
-static MPI_Win common = MPI_WIN_NULL; /* memory of one machine */
+static MPI_Win common = MPI_WIN_NULL;     /* memory of one machine */
+static MPI_Comm workers = MPI_COMM_WORLD; /* the processes among which there is work */
 
 static bool start(int *rank, int *count)
 {
@@ -72,6 +73,12 @@ static dvi_status read_share(const char *path, dvi_mesh **share)
   dvi_division_destroy(&division);
   const dvi_division_options options = {.size = sizeof options, .comm = workers};
   return dvi_mesh_read_divided(path, &options, share, &division);
+}
+
+static const dvi_yee_ranks *grid(void)
+{
+  if (planes == NULL) (void)dvi_yee_ranks_create(MPI_COMM_WORLD, &planes);
+  return planes;
 }
 
 static void tell(int rank, int degree, mesh_division *told)
@@ -226,6 +233,7 @@ static dvi_status partition(const dvi_mesh *mesh, int parts, int *owner)
 static void end(void)
 {
   dismiss();
+  dvi_yee_ranks_destroy(&planes);
   if (common != MPI_WIN_NULL) (void)MPI_Win_free(&common);
   (void)PetscPopErrorHandler();
   (void)PetscFinalize();
@@ -243,6 +251,7 @@ const petsc_module dvi_petsc = {
     .divide = divide,
     .read = read_share,
     .write = dvi_mesh_write_divided,
+    .grid = grid,
     .tell = tell,
     .modes = find_modes,
     .largest = largest,

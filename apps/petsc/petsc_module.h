@@ -5,6 +5,7 @@
 #ifndef PETSC_MODULE_H
 #define PETSC_MODULE_H
 #include <dvi/field.h>
+#include <dvi/yee.h>
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -54,6 +55,10 @@ typedef struct petsc_module {
 
   /** Write a whole mesh to such a file. The module need not be started. */
   dvi_status (*write)(const dvi_mesh *mesh, const char *path);
+
+  /** Give what divides grids among all processes, until the end. Called by all. NULL if that
+   *  failed. */
+  const dvi_yee_ranks *(*grid)(void);
 
   /** Give the division of process `rank`, with the bytes that a form of a degree receives. Called
    *  by all processes. */

@@ -199,6 +199,21 @@ dvi_status dvi_field_lift(const dvi_field *field, const double *q, double *u);
 dvi_status dvi_field_project(const dvi_field *field, const double *u, const double *rate, double *q,
                              double *p);
 
+/** Give a number of a vertex or an edge. Return 0, or another number for a failure. */
+typedef int dvi_field_term(int64_t cell, double *term, void *user);
+
+/** Add up numbers of the field's cells, which are vertices or edges, exactly, and round the sum
+ *  once. On a share all processes call this, and have the sum over all of them. The owner of a cell
+ *  gives its number.
+ *
+ *  @param cell  [count] for a sum over some of the cells of this mesh; NULL for all. Cells of other
+ *               owners are passed over
+ *  @retval DVI_BAD_ARGUMENT     an argument is missing
+ *  @retval DVI_CALLBACK_FAILED  `term` failed on one of the processes
+ *  @retval DVI_NOT_FINITE       the sum is not finite */
+dvi_status dvi_field_sum(const dvi_field *field, int64_t count, const int *cell,
+                         dvi_field_term *term, void *user, double *sum);
+
 #ifdef __cplusplus
 }
 #endif

@@ -108,6 +108,8 @@ typedef struct dvi_scene_point {
   void *user[3];
 } dvi_scene_point;
 
+struct dvi_yee_ranks; /* of <dvi/yee.h> */
+
 /** What replaces the mesh of a scene by the share of one process, as soon as it has been made, or
  *  makes the share without a whole mesh. */
 typedef struct dvi_scene_division {
@@ -119,6 +121,9 @@ typedef struct dvi_scene_division {
    *  Returns likewise. NULL: such files are refused, as they are by dvi_scene_read */
   dvi_status (*read)(const char *path, dvi_mesh **share, void *user);
   void *user;
+  /** Those among which marches by yee divide a grid, for as long as there are marches. NULL if such
+   *  marches are refused */
+  const struct dvi_yee_ranks *grid;
 } dvi_scene_division;
 
 /** A number high + low, with more digits than a double has. high is the double nearest to it. */
@@ -170,12 +175,13 @@ dvi_status dvi_scene_parse(const char *name, const char *text, size_t length, in
 
 /** Read the scene of a field on the share of one process, otherwise as dvi_scene_read.
  *
- *  All processes read the same scene. It has marches by leapfrog alone, and no system: its terms
- *  have the number of unknowns of the share and nothing else.
+ *  All processes read the same scene. It has marches by leapfrog, of waves and Maxwell's fields on
+ *  meshes, and by yee on grids, but no system: its terms have the number of unknowns of the share,
+ *  and probes of waves, whose values all processes ask for together.
  *
  *  @param      division  its share becomes the scene's mesh, which the scene destroys
- *  @retval DVI_UNSUPPORTED  the scene has no field of waves or Maxwell's on a mesh, or watches a
- *                           wave by probes
+ *  @retval DVI_UNSUPPORTED  the scene has no field of waves or Maxwell's, or a grid and no
+ *                           `grid` in the division
  *  @retval (others)         as dvi_scene_read and `divide` */
 dvi_status dvi_scene_read_share(const char *path, const dvi_scene_division *division,
                                 int setting_count, const char *const *settings, dvi_scene **scene,

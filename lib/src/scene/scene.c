@@ -241,7 +241,7 @@ dvi_status dvi_scene_read_share(const char *path, const dvi_scene_division *divi
   if (division == NULL || division->size != sizeof *division || division->divide == NULL)
     return write_failure(message, size, DVI_BAD_ARGUMENT, "scene");
   dvi_status status = read_path(path, division, setting_count, settings, scene, message, size);
-  if (status != DVI_OK || dvi__is_share(*scene)) return status;
+  if (status != DVI_OK || dvi__is_share(*scene) || dvi__has_divided_grid(*scene)) return status;
   dvi_scene_tell(*scene, "lagrangian",
                  "several processes share fields of waves, Maxwell's and solids on "
                  "meshes, and this scene has none",

@@ -1,7 +1,7 @@
 #!/bin/sh
 # All that mpirun -np N dvi run does: the rows of dvi run, checkpoints that go on with other numbers
-# of processes, files, signals, kills, refusals; and dvi explain. Skipped where dvi has no module for
-# processes.
+# of processes, files, signals, kills, refusals; dvi explain, and dvi bench --scale ranks=. Skipped
+# where dvi has no module for processes.
 # Usage: ranks.sh DVI
 set -u
 here=$(cd "$(dirname "$0")" && pwd)
@@ -14,6 +14,11 @@ modules=$(dirname "$dvi")
 
 as_one 3 torus.yaml --columns energy,gauss,e
 as_one 4 box.yaml --every 5
+as_one 2 probes.yaml
+as_one 4 grid.yaml
+sed -e 's/{cpml: 2}/absorbing/' \
+  -e 's/^  s: .*/  s: {of: B, at: [0.9, 0.9, 0.9], along: [0, 0, 1]}/' grid.yaml >walls.yaml
+as_one 3 walls.yaml --columns energy,gauss,charge,divergence,e,s
 by 2 wave.yaml >all.csv || fail "no rows on standard output"
 by 1 wave.yaml >one.csv
 same one.csv all.csv "standard output"
@@ -27,6 +32,33 @@ awk -F, 'NR > 1 { cells += $3
     wrong += !($4 > 0 && $5 == 2 && $6 == 2 && $7 > 0 && $7 % 8 == 0) }
   END { exit !(NR == 4 && cells == 324 && !wrong) }' shares.csv ||
   fail "explain: $(cat shares.csv)"
+
+# A step is measured on processes that dvi starts, and predicted for more of them.
+"$dvi" bench torus.yaml --scale ranks=1,2,4,...,300 --rounds 1 --steps 2 --csv scale.csv \
+  >out || fail "bench: no scaling"
+for words in '^Ranks that share torus.yaml' '^triad .* of 2 processes together' \
+  '^  network: .*shared memory' '^  fit: .*the largest deviation is' '^What breaks first'; do
+  grep -q "$words" out || fail "bench: no '$words' in: $(cat out)"
+done
+header=scaling,problem,ranks,rank_cells,step_seconds,efficiency,exchange,messages,bytes
+header=$header,measured_seconds,measured_efficiency,oversubscribed,measured_lower
+header=$header,measured_upper,cells
+[ "$(head -n 1 scale.csv)" = $header ] || fail "bench: $(head -n 1 scale.csv)"
+# One rank waits for nobody, and what was measured stands in its rows alone.
+awk -F, 'NR == 1 { next }
+  { measured = $3 == 1 || ($3 == 2 && $1 == "strong")
+    if (!($5 > 0 && $6 > 0 && $7 >= 0 && $7 < 1)) bad++
+    if (($7 == 0) != ($3 == 1) || ($10 != "") != measured) bad++
+    if ($15 != ($1 == "weak" ? 324 * $3 : 324)) bad++ }
+  END { exit !(NR == 21 && !bad) }' scale.csv || fail "bench: $(cat scale.csv)"
+# What makes no sense is refused before processes start.
+for option in '--scale ranks=1,2 --latency 0' '--scale ranks=1,2 --bandwidth nan' \
+  '--scale ranks=2,1' '--scale ranks=1,2 --method avi' '--scale ranks=1,2 --at 1e-6' \
+  '--latency 1e-6' '--scale threads=1,2 --weak n'; do
+  # shellcheck disable=SC2086
+  "$dvi" bench torus.yaml $option >out 2>&1
+  [ $? -eq 2 ] || fail "bench $option: $(cat out)"
+done
 
 # ---- checkpoints ----
 
@@ -62,6 +94,7 @@ every_way() {
   goes_on 3 2 "$@"
 }
 every_way wave.yaml --h 0.002 --every 4
+every_way grid.yaml --h 0.01 --every 5
 every_way torus.yaml --h 0.004 --every 5
 together 1 'cannot read' wave.yaml --resume nowhere
 together 2 'half.state. stands at t = ' torus.yaml --h 0.004 --t-end 0.1 --resume half.state
@@ -115,9 +148,14 @@ says err '^dvi: run: signal 15 ended the run at t' 'a signal to mpirun'
 
 # ---- refusals ----
 
-together 2 'leapfrog alone, not verlet' wave.yaml --method verlet
+alone 'MPI knows of 1'
+together 2 'kepler is none' kepler
+together 2 'leapfrog and yee alone, not verlet' wave.yaml --method verlet
 sed 's/exp(/sqrt(x - 0.5)*exp(/' wave.yaml >nan.yaml
+sed 's/0.9, 0.13/3, 4/' probes.yaml >outside.yaml
 together 2 'the start is not finite at vertex' nan.yaml # on one process, on which the others wait
+together 2 '--method yee: several processes share yee on grids' wave.yaml --method yee
+together 2 "the probe 'b' is outside of the mesh" outside.yaml
 together 1 "cannot write '/nowhere/rows.csv'" wave.yaml --out /nowhere/rows.csv
 together 1 "cannot write '/nowhere/state'" wave.yaml --checkpoint /nowhere/state
 exit $((failures > 0))

@@ -16,6 +16,10 @@ method: leapfrog
 step: {fraction: 0.5}
 until: 1
 SCENE
+{
+  cat wave.yaml
+  echo 'probes: {a: {at: [0.5, 0.5]}, b: {at: [0.9, 0.13]}, c: {integral: u^2*x, over: all}}'
+} >probes.yaml
 cat >torus.yaml <<'SCENE'
 mesh: {generator: bcc-torus, cells: [3, 3, 3], size: [1, 1, 1]}
 field: maxwell
@@ -37,6 +41,21 @@ sources:
 probes:
   e: {of: E, at: [0.3, 0.4, 0.5], along: [1, 0.2, 0]}
 method: leapfrog
+step: {fraction: 0.5}
+until: 1
+SCENE
+
+cat >grid.yaml <<'SCENE'
+mesh: {generator: box, cells: [6, 7, 9]}
+field: maxwell
+boundary: {boundary: pec, left: {cpml: 2}}
+materials:
+  all: {eps: 1 + 0.5*x, sigma: 0.1}
+initial: {E: [sin(pi*y), 0, cos(2*pi*x)]}
+probes:
+  e: {of: E, at: [0.4, 0.4, 0.5], along: [1, 0.2, 0]}
+  s: {flux: {from: [0.5, 0.1, 0.1], to: [0.5, 0.9, 0.95]}}
+method: yee
 step: {fraction: 0.5}
 until: 1
 SCENE
@@ -114,5 +133,20 @@ killed() {
   sed 1,2d rest.csv >rest
   tail -n "$(wc -l <rest)" whole.csv >whole
   same rest whole "rank $2 of $1 is killed, and $3 go on"
-  [ "$(wc -l <rest)" -ge 50 ] || fail "the rest has too few rows"
+  [ "$(wc -l <rest)" -ge 40 ] || fail "the rest has too few rows"
+}
+
+# started RANK: run as if two processes had been started.
+started() { OMPI_COMM_WORLD_SIZE=2 OMPI_COMM_WORLD_RANK=$1 "$dvi" run wave.yaml 2>&1; }
+
+# alone WORDS: processes without mpirun refuse to run the same twice, and the first one says why.
+alone() {
+  said=$(started 0)
+  [ $? -eq 2 ] || fail "two processes without mpirun: no exit code 2"
+  case $said in
+    "dvi: 2 processes were started, and $1"*) ;;
+    *) fail "two processes without mpirun: $said" ;;
+  esac
+  said=$(started 1) || fail "the second process without mpirun fails"
+  [ -z "$said" ] || fail "the second process without mpirun says: $said"
 }

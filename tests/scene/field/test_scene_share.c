@@ -1,6 +1,7 @@
 /* Scenes on shares of their mesh: marches have the bits of the whole mesh, and what needs the whole
  * mesh is refused. */
 #include <dvi/scene.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -27,7 +28,7 @@ static dvi_status take(const dvi_mesh *mesh, dvi_mesh **share, void *user)
   return DVI_OK;
 }
 
-/* Give what a solid keeps, and its probes. */
+/* Give what a wave or a solid keeps, and its probes. */
 static dvi_status probe(const dvi_scene *scene, const dvi_march *march, double *seen)
 {
   const dvi_system_terms *terms = dvi_scene_terms(scene);
@@ -49,7 +50,7 @@ static dvi_status observe(const dvi_scene *scene, double *seen)
   if (status == DVI_OK) status = dvi_march_advance(march, 0.7);
   for (int i = 0; status == DVI_OK && dvi_march_observable(march, i) != NULL; i++, seen++)
     status = dvi_march_observe(march, i, seen);
-  if (status == DVI_OK && dvi_scene_elastic(scene) != NULL) status = probe(scene, march, seen);
+  if (status == DVI_OK && dvi_march_size(march, DVI_FORM_A) > 0) status = probe(scene, march, seen);
   dvi_march_destroy(&march);
   return status;
 }
@@ -113,6 +114,9 @@ static void check_observed(const char *text)
 START_TEST(marches_have_the_bits_of_the_whole_mesh)
 {
   check_observed(WAVE "boundary: fixed\nmaterials: {all: {rho: 1 + x, a: 1 + y}}\n");
+  check_observed(WAVE "boundary: {left: fixed}\n"
+                      "probes: {a: {at: [0.5, 0.5, 0.5]}, b: {at: [0.9, 0.1, 0.7]},\n"
+                      "  c: {integral: u^2*x}, d: {integral: 1 + u, over: all}}\n");
   check_observed(MAXWELL "materials: {all: {eps: 1 + x, sigma: 0.2}}\n"
                          "boundary: {boundary: pec, left: absorbing}\n"
                          "initial: {E: [y*(1 - y), 0, x]}\n"
@@ -143,8 +147,8 @@ static void check_refused(const char *text, dvi_status status, const char *words
 
 START_TEST(what_needs_the_whole_mesh_is_refused)
 {
-  check_refused(WAVE "boundary: fixed\nprobes: {a: {at: [0.5, 0.5, 0.5]}}\n", DVI_UNSUPPORTED,
-                "probes of a wave need the whole mesh");
+  check_refused(WAVE "boundary: fixed\nprobes: {a: {at: [0.5, 0.5, 5]}}\n", DVI_BAD_FILE,
+                "the probe 'a' is outside of the mesh");
   check_refused(SOLID "obstacles: {floor: {plane: {point: [0, 0, -1], normal: [0, 0, 1]}, "
                       "restitution: 1}}\nmaterials: {all: {law: svk, lambda: 1, mu: 1}}\n",
                 DVI_UNSUPPORTED, "an obstacle needs a whole mesh");
@@ -154,6 +158,37 @@ START_TEST(what_needs_the_whole_mesh_is_refused)
   check_refused("coordinates: {q: scalar}\nlagrangian: q'^2/2\ninitial: {q: 1}\nmethod: verlet\n"
                 "step: 0.1\nuntil: 1\n",
                 DVI_UNSUPPORTED, "this scene has none");
+}
+END_TEST
+
+/* Give 0.1 at each vertex, a failure at that of number *user, and no number at the next one. */
+static int term_of(int64_t vertex, double *term, void *user)
+{
+  const int64_t *at = user;
+  *term = vertex == *at + 1 ? (double)NAN : 0.1;
+  return vertex == *at;
+}
+
+START_TEST(sums_over_a_field_are_rounded_once)
+{
+  shared_scene s = {.path = NULL};
+  dvi_scene *scene = NULL;
+  const int cell[] = {0, 5, 9};
+  int64_t nowhere = -2, failing = 7, after = 4;
+  double sum = -1;
+  read_shares(WAVE, &s);
+  ck_assert_int_eq(dvi_scene_read(s.path, 0, NULL, &scene, NULL, 0), DVI_OK);
+  const dvi_field *field = dvi_scene_field(scene);
+  ck_assert_int_eq(dvi_field_sum(field, 3, cell, term_of, &failing, NULL), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_field_sum(field, -1, cell, term_of, &failing, &sum), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_field_sum(field, 0, NULL, term_of, &failing, &sum), DVI_CALLBACK_FAILED);
+  ck_assert_int_eq(dvi_field_sum(field, 3, cell, term_of, &after, &sum), DVI_NOT_FINITE);
+  ck_assert_double_eq(sum, -1);
+  ck_assert_int_eq(dvi_field_sum(field, 3, cell, term_of, &nowhere, &sum), DVI_OK);
+  ck_assert_double_eq(sum, 0.30000000000000004);
+  ck_assert_int_eq(dvi_field_sum(field, 0, NULL, term_of, &nowhere, &sum), DVI_OK);
+  ck_assert_double_eq(sum, 6); /* 60 vertices, where one after the other gives 5.999999999999997 */
+  dvi_scene_destroy(&scene);
 }
 END_TEST
 
@@ -177,5 +212,6 @@ SUITE(scene_share)
   tcase_add_checked_fixture(tests, make_folder, remove_folder);
   tcase_add_test(tests, marches_have_the_bits_of_the_whole_mesh);
   tcase_add_test(tests, what_needs_the_whole_mesh_is_refused);
+  tcase_add_test(tests, sums_over_a_field_are_rounded_once);
   tcase_add_test(tests, a_scene_needs_a_division);
 }

@@ -236,3 +236,35 @@ dvi_status dvi_field_project(const dvi_field *field, const double *u, const doub
     q[i] = u != NULL ? u[field->unknown[i]] : 0;
   return DVI_OK;
 }
+
+/* Add the numbers of the cells that this process owns. */
+static dvi_status add_terms(const dvi_field *f, int64_t count, const int *cell,
+                            dvi_field_term *term, void *user, dvi__block_sum *sum)
+{
+  if (cell == NULL) count = f->mesh->count[f->degree];
+  for (int64_t i = 0; i < count; i++) {
+    const int64_t c = cell != NULL ? cell[i] : i;
+    double number;
+    if (!dvi__owns(f->mesh, f->degree, c)) continue;
+    const int failed = term(c, &number, user);
+    if (failed != 0)
+      return dvi__fail(DVI_CALLBACK_FAILED, "field: the term of a sum at %s failed with code %d",
+                       dvi__name_cell(f->mesh, f->degree, c).text, failed);
+    dvi__block_sum_add(sum, number);
+  }
+  return DVI_OK;
+}
+
+dvi_status dvi_field_sum(const dvi_field *field, int64_t count, const int *cell,
+                         dvi_field_term *term, void *user, double *sum)
+{
+  dvi__block_sum block = {.count = 0};
+  double total;
+  if (field == NULL || count < 0 || term == NULL || sum == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "field: a field, a term and a place for a sum are needed");
+  DVI_TRY(dvi__agree(field->mesh, add_terms(field, count, cell, term, user, &block)));
+  DVI_TRY(dvi__sum_of_all(field->mesh, dvi__block_sum_end(&block), &total));
+  if (!isfinite(total)) return dvi__fail(DVI_NOT_FINITE, "field: a sum is not finite");
+  *sum = total;
+  return DVI_OK;
+}

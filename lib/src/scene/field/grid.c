@@ -182,7 +182,8 @@ static dvi_status set_terms(draft *d, const dvi_march_options *options)
                              .step = options->step,
                              .fraction = options->fraction,
                              .span = options->span,
-                             .threads = options->threads};
+                             .threads = options->threads,
+                             .ranks = d->field->ranks};
   d->current = dvi__heap_take(sources, sizeof *d->current);
   d->dipole = dvi__heap_take(3 * sources, sizeof *d->dipole);
   d->wave = dvi__heap_take(sources, sizeof *d->wave);

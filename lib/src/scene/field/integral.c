@@ -12,6 +12,7 @@
 #include "text/heap.h"
 
 struct dvi__field_integral {
+  const dvi_field *field;
   dvi__place *function;
   const char *part;
   const dvi__tree *tree;
@@ -21,34 +22,41 @@ struct dvi__field_integral {
   int *unknown;           /* [vertices] number among the unknowns, or -1 */
 };
 
+/* An integral of a state q. */
+typedef struct state {
+  const dvi__field_integral *integral;
+  const double *q;
+} state;
+
+static int term_at(int64_t v, double *term, void *user)
+{
+  const state *of = user;
+  const dvi__field_integral *a = of->integral;
+  const double u = a->unknown[v] >= 0 ? of->q[a->unknown[v]] : a->fixed[v];
+  double f = 0;
+  const int failed = a->weight[v] == 0 ? 0
+                                       : dvi__place_of_value(
+                                             a->function, a->point + v * a->function->space, u, &f);
+  *term = a->weight[v] * f;
+  return failed;
+}
+
 int dvi__field_integral_value(double t, const double *q, const double *p, double *value, void *user)
 {
-  const dvi__field_integral *a = user;
-  int failed = 0;
+  state of = {user, q};
   (void)t, (void)p;
-  *value = 0;
-  for (int64_t v = 0; v < a->vertices && failed == 0; v++) {
-    const double u = a->unknown[v] >= 0 ? q[a->unknown[v]] : a->fixed[v];
-    double f;
-    if (a->weight[v] == 0) continue;
-    failed = dvi__place_of_value(a->function, a->point + v * a->function->space, u, &f);
-    *value += a->weight[v] * f;
-  }
-  return failed;
+  return dvi__field_sum_value(of.integral->field, 0, NULL, term_at, &of, value);
 }
 
 bool dvi__field_integral_read(dvi_scene *scene, const dvi__tree *tree, const dvi__tree *over,
                               dvi__field_integral **integral)
 {
-  const dvi_mesh *mesh = scene->field->mesh;
   dvi__field_integral *a = dvi__arena_take(&scene->arena, 1, sizeof *a);
-  int64_t count;
   if (a == NULL) return dvi__scene_no_memory(scene);
   if (over != NULL && !dvi__want_text(scene, over, "a part of the mesh")) return false;
   a->part = over != NULL ? over->text : "all";
   a->tree = tree;
-  (void)dvi_mesh_part_cells(mesh, a->part, dvi_mesh_dimension(mesh), &count);
-  if (count <= 0)
+  if (!dvi__has_part_of_cells(scene->field->mesh, a->part))
     return dvi__refuse_part(scene, over != NULL ? over->span : tree->span, a->part, true);
   *integral = a;
   return dvi__place_read(scene, tree, DVI__OF_VALUE, "an integral", &a->function);
@@ -80,6 +88,7 @@ bool dvi__field_integral_make(dvi_scene *scene, dvi__field_integral *a)
   const struct dvi__scene_field *f = scene->field;
   int64_t unknowns;
   const int *unknown = dvi_field_unknowns(f->field, &unknowns);
+  a->field = f->field;
   a->vertices = dvi_mesh_count(f->mesh, 0);
   a->point = dvi_mesh_points(f->mesh);
   a->weight = dvi__arena_take(&scene->arena, 2 * (size_t)a->vertices, sizeof *a->weight);

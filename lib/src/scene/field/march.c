@@ -63,9 +63,7 @@ static dvi_march_options complete(const dvi_scene *scene, const dvi_march_option
 static bool suits_grid(const struct dvi__scene_field *f, const dvi_march_options *options)
 {
   const struct dvi__scene_maxwell *m = f->maxwell;
-  if (m == NULL || !f->is_grid || dvi_mesh_share_numbers(f->mesh, 0) != NULL ||
-      strcmp(options->method, "yee") != 0)
-    return false;
+  if (m == NULL || !f->is_grid || strcmp(options->method, "yee") != 0) return false;
   bool is_by_part = false;
   for (int i = 0; i < m->probes; i++) is_by_part = is_by_part || m->probe[i].part != NULL;
   return f->field == NULL || !(is_by_part || m->of_A != NULL || options->potential);
@@ -82,7 +80,9 @@ dvi_status dvi_scene_march_create(const dvi_scene *scene, const dvi_march_option
   if (scene->density != NULL) return dvi__density_march(scene, &all, march);
   if (dvi__is_elastic(scene)) return dvi__elastic_march(scene, &all, march);
   const struct dvi__scene_field *f = scene->field;
-  if (dvi__is_share(scene) && strcmp(all.method, "leapfrog") != 0) return DVI_UNSUPPORTED;
+  const bool divides_grid = suits_grid(f, &all) && f->ranks != NULL;
+  if (dvi__is_share(scene) && !divides_grid && strcmp(all.method, "leapfrog") != 0)
+    return DVI_UNSUPPORTED;
   if (f->kind != DVI_CIRCUMCENTRIC && strcmp(all.method, "yee") == 0 &&
       dvi_mesh_kind(f->mesh) == DVI_BOXES)
     return DVI_UNSUPPORTED;

@@ -171,6 +171,8 @@ static bool take_share(dvi_scene *scene, const dvi__tree *section)
   struct dvi__scene_field *f = scene->field;
   dvi_mesh *share = NULL;
   if (scene->division == NULL) return true;
+  if (f->is_grid && f->maxwell != NULL) f->ranks = scene->division->grid;
+  if (f->mesh == NULL && f->ranks != NULL) return true;
   if (f->mesh == NULL || dvi__has_density(scene))
     return dvi__complain(scene->complaint, DVI_UNSUPPORTED, section->span,
                          "several processes share fields of waves, Maxwell's and solids on meshes, "
@@ -178,7 +180,11 @@ static bool take_share(dvi_scene *scene, const dvi__tree *section)
   if (dvi_mesh_share_numbers(f->mesh, 0) != NULL) return true;
   if (!report(scene, section, scene->division->divide(f->mesh, &share, scene->division->user)))
     return false;
-  dvi_mesh_destroy(&f->mesh);
+  if (f->maxwell == NULL && !dvi__is_elastic(scene) &&
+      dvi__tree_find(scene->tree, "probes") != NULL)
+    f->whole = f->mesh;
+  else
+    dvi_mesh_destroy(&f->mesh);
   f->mesh = share;
   return true;
 }
@@ -186,6 +192,11 @@ static bool take_share(dvi_scene *scene, const dvi__tree *section)
 bool dvi__is_share(const dvi_scene *scene)
 {
   return scene->field != NULL && dvi_mesh_share_numbers(scene->field->mesh, 0) != NULL;
+}
+
+bool dvi__has_divided_grid(const dvi_scene *scene)
+{
+  return scene->field != NULL && scene->field->ranks != NULL;
 }
 
 /* A density takes the mesh, and the scene has no field of this room. */

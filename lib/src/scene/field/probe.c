@@ -1,6 +1,7 @@
 /* The section probes: values of the field at points, and integrals, watched along a run. A probe at
  * a point is a sum of the values at the vertices of the cell in which it is, by Whitney's
  * interpolation. */
+#include <math.h>
 #include <string.h>
 
 #include "scene/field/maxwell.h"
@@ -11,11 +12,13 @@ enum { VERTICES_MOST = 16 };
 
 /* u = constant + sum of weight * q, or an integral. */
 struct dvi__probe {
+  const dvi_field *field;
   const char *name;
   dvi__span span;      /* of the name */
   const dvi__tree *at; /* NULL for an integral */
   dvi__field_integral *integral;
   double point[DVI__PLACE_SPACE];
+  int first; /* vertex of the cell, or -1 if this share has it not */
   int count;
   int unknown[VERTICES_MOST];
   double weight[VERTICES_MOST], constant;
@@ -28,6 +31,36 @@ static int probe_value(double t, const double *q, const double *p, double *value
   *value = probe->constant;
   for (int i = 0; i < probe->count; i++) *value += probe->weight[i] * q[probe->unknown[i]];
   return 0;
+}
+
+int dvi__field_sum_value(const dvi_field *field, int64_t count, const int *cell,
+                         dvi_field_term *term, void *user, double *value)
+{
+  const dvi_status status = dvi_field_sum(field, count, cell, term, user, value);
+  if (status == DVI_NOT_FINITE) *value = NAN;
+  return status == DVI_OK || status == DVI_NOT_FINITE ? 0 : 1;
+}
+
+/* A probe of a state q. */
+typedef struct state {
+  const struct dvi__probe *probe;
+  const double *q;
+} state;
+
+static int value_at(int64_t vertex, double *value, void *user)
+{
+  const state *of = user;
+  (void)vertex;
+  return probe_value(0, of->q, NULL, value, (void *)of->probe);
+}
+
+/* The owner of a cell's first vertex has all of the cell, and tells the other processes. */
+static int shared_value(double t, const double *q, const double *p, double *value, void *user)
+{
+  state of = {user, q};
+  (void)t, (void)p;
+  return dvi__field_sum_value(of.probe->field, of.probe->first >= 0, &of.probe->first, value_at,
+                              &of, value);
 }
 
 /* ---- reading ---- */
@@ -58,10 +91,6 @@ bool dvi__read_probes(dvi_scene *scene, const dvi__tree *section)
   if (scene->density != NULL) return dvi__density_read_probes(scene, section);
   if (dvi__is_elastic(scene)) return dvi__elastic_read_probes(scene, section);
   if (scene->field->maxwell != NULL) return dvi__maxwell_read_probes(scene, section);
-  if (dvi__is_share(scene))
-    return dvi__complain(scene->complaint, DVI_UNSUPPORTED, section->span,
-                         "probes of a wave need the whole mesh, and this is the share of one of "
-                         "several processes");
   if (!dvi__want_mapping(scene, section, "probes")) return false;
   struct dvi__probe *probe = dvi__arena_take(&scene->arena, (size_t)section->count + 1,
                                              sizeof *probe);
@@ -75,40 +104,77 @@ bool dvi__read_probes(dvi_scene *scene, const dvi__tree *section)
 
 /* ---- making ---- */
 
+/* Return the cell of a share whose number in the whole mesh is given, or -1. */
+static int cell_of_number(const dvi_mesh *share, int64_t number)
+{
+  const int n = dvi_mesh_dimension(share);
+  const int64_t *numbers = dvi_mesh_share_numbers(share, n);
+  int64_t low = 0, high = dvi_mesh_count(share, n);
+  while (low < high) {
+    const int64_t middle = (low + high) / 2;
+    if (numbers[middle] < number)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low < dvi_mesh_count(share, n) && numbers[low] == number ? (int)low : -1;
+}
+
+/* Find the cell of a probe, which may be of another share, -1, and the weights of its vertices. */
+static bool find_cell(dvi_scene *scene, const struct dvi__probe *probe, int *cell, double *weight)
+{
+  const struct dvi__scene_field *f = scene->field;
+  const dvi_mesh *mesh = f->whole != NULL ? f->whole : f->mesh;
+  const dvi_status status = dvi_mesh_locate(mesh, 1, probe->point, cell, weight);
+  if (status != DVI_OK)
+    return dvi__complain(scene->complaint, status, probe->at->span, "%s", dvi_last_error());
+  if (*cell < 0)
+    return dvi__scene_refuse(scene, probe->at->span, "the probe '%s' is outside of the mesh",
+                             probe->name);
+  if (f->whole != NULL) *cell = cell_of_number(f->mesh, *cell);
+  return true;
+}
+
+/* Return the number of a vertex among the unknowns, or -1. */
+static int number_of(const dvi_field *field, int vertex)
+{
+  int64_t unknowns, low = 0;
+  const int *unknown = dvi_field_unknowns(field, &unknowns);
+  int64_t high = unknowns;
+  while (low < high) {
+    const int64_t middle = (low + high) / 2;
+    if (unknown[middle] < vertex)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low < unknowns && unknown[low] == vertex ? (int)low : -1;
+}
+
 /* Find the weights of a probe's cell one by one, as the values of functions that are 1 at one of
  * its vertices. Fixed vertices add to the constant. */
 static bool place_probe(dvi_scene *scene, struct dvi__probe *probe, double *u)
 {
   const struct dvi__scene_field *f = scene->field;
-  const int n = dvi_mesh_dimension(f->mesh);
   int cell, width;
-  int64_t unknowns;
   double weight[DVI_MESH_DIMENSION_MAX + 1], value;
-  dvi_status status = dvi_mesh_locate(f->mesh, 1, probe->point, &cell, weight);
-  if (status != DVI_OK)
-    return dvi__complain(scene->complaint, status, probe->at->span, "%s", dvi_last_error());
-  if (cell < 0)
-    return dvi__scene_refuse(scene, probe->at->span, "the probe '%s' is outside of the mesh",
-                             probe->name);
-  const int *vertex = dvi_mesh_vertices(f->mesh, n, &width) + (ptrdiff_t)cell * width,
-            *unknown = dvi_field_unknowns(f->field, &unknowns);
+  probe->field = f->field;
+  probe->first = -1;
+  if (!find_cell(scene, probe, &cell, weight)) return false;
+  if (cell < 0) return true;
+  const int *vertex = dvi_mesh_vertices(f->mesh, dvi_mesh_dimension(f->mesh), &width);
+  vertex += (ptrdiff_t)cell * width;
+  probe->first = vertex[0];
   (void)dvi_field_lift(f->field, scene->zeros, u);
-  status = dvi_form_evaluate(f->mesh, 0, u, cell, weight, &probe->constant);
+  dvi_status status = dvi_form_evaluate(f->mesh, 0, u, cell, weight, &probe->constant);
   memset(u, 0, (size_t)dvi_mesh_count(f->mesh, 0) * sizeof *u);
   for (int c = 0; c < width && status == DVI_OK; c++) {
-    int64_t low = 0, high = unknowns;
-    while (low < high) {
-      const int64_t middle = (low + high) / 2;
-      if (unknown[middle] < vertex[c])
-        low = middle + 1;
-      else
-        high = middle;
-    }
-    if (low == unknowns || unknown[low] != vertex[c]) continue;
+    const int number = number_of(f->field, vertex[c]);
+    if (number < 0) continue;
     u[vertex[c]] = 1;
     status = dvi_form_evaluate(f->mesh, 0, u, cell, weight, &value);
     u[vertex[c]] = 0;
-    probe->unknown[probe->count] = (int)low;
+    probe->unknown[probe->count] = number;
     probe->weight[probe->count++] = value;
   }
   return status == DVI_OK ||
@@ -149,10 +215,13 @@ bool dvi__probes_make(dvi_scene *scene)
            (is_integral ? dvi__field_integral_make(scene, probe->integral)
                         : place_probe(scene, probe, u));
     list[i] = (dvi_invariant){.name = probe->name,
-                              .value = is_integral ? dvi__field_integral_value : probe_value,
+                              .value = is_integral            ? dvi__field_integral_value
+                                       : dvi__is_share(scene) ? shared_value
+                                                              : probe_value,
                               .user = is_integral ? (void *)probe->integral : probe};
   }
   dvi__heap_free(u);
+  dvi_mesh_destroy(&f->whole);
   scene->terms.invariants = list;
   scene->terms.invariant_count = f->probes;
   return good;

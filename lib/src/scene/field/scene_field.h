@@ -31,6 +31,8 @@ struct dvi__scene_field {
   bool is_grid;                       /* the mesh is one of boxes that were generated */
   dvi_mesh *drawn;                    /* that of a grid, once it is asked for */
   dvi_mesh *mesh;                     /* NULL for a grid that yee alone advances */
+  dvi_mesh *whole;                    /* that of a share, until probes have their places */
+  const struct dvi_yee_ranks *ranks;  /* that share a grid. NULL for others */
   int dimension;
   dvi_star *star;
   dvi_field *field;
@@ -57,6 +59,10 @@ bool dvi__field_integral_read(dvi_scene *scene, const dvi__tree *tree, const dvi
 bool dvi__field_integral_make(dvi_scene *scene, dvi__field_integral *integral);
 int dvi__field_integral_value(double t, const double *q, const double *p, double *value,
                               void *user);
+
+/* Give dvi_field_sum as a callback of an invariant does, whose caller looks if it is finite. */
+int dvi__field_sum_value(const dvi_field *field, int64_t count, const int *cell,
+                         dvi_field_term *term, void *user, double *value);
 
 /* Take an expression or, with `count` above 1, a list of so many as a function of place. */
 typedef struct dvi__place_vector {

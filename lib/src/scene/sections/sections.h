@@ -92,6 +92,9 @@ void dvi__scene_density_clear(dvi_scene *scene);
 /* Tell if the scene's mesh is the share of one of several processes. */
 bool dvi__is_share(const dvi_scene *scene);
 
+/* Tell if it has a grid that several processes divide. It may be that of a share as well. */
+bool dvi__has_divided_grid(const dvi_scene *scene);
+
 /* Do so for a solid (scene/elastic): note whether the field is one, before the mesh is read, check
  * the mesh, name a place, read the sections that other fields have, too, and refuse those that only
  * others have. */
