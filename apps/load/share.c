@@ -20,9 +20,12 @@ int share_check(const char *command, const problem *scene, const char *method)
                        command, ranks_count(), scene->name);
   if (method == NULL) method = scene->method;
   if (method != NULL && strcmp(method, "leapfrog") == 0) return DONE;
-  return usage_error("%s: %d processes share leapfrog alone, not %s; give --method leapfrog, or "
-                     "leave mpirun out",
-                     command, ranks_count(), method != NULL ? method : "another method");
+  const bool is_wave = dvi_scene_marches(scene->scene, "midpoint"); /* which shares of waves have */
+  if (is_wave && method != NULL && strcmp(method, "midpoint") == 0) return DONE;
+  return usage_error("%s: %d processes share leapfrog%s, not %s; give --method leapfrog, or leave "
+                     "mpirun out",
+                     command, ranks_count(), is_wave ? " and midpoint" : " alone",
+                     method != NULL ? method : "another method");
 }
 
 static const table_column columns[] = {

@@ -108,7 +108,7 @@ refused() {
   [ ! -s out.txt ] || wrong "$*: rows"
 }
 refused 2 'kepler is none' kepler
-refused 2 'leapfrog alone, not verlet' wave.yaml --method verlet
+refused 2 'leapfrog and midpoint, not verlet' wave.yaml --method verlet
 refused 2 '--checkpoint needs the whole mesh' wave.yaml --checkpoint state
 refused 2 'probes of a wave need the whole mesh' probes.yaml
 # One process alone fails here, on which the others wait.
@@ -130,4 +130,17 @@ wait $mpirun
 [ $? -eq 143 ] || wrong "a signal: no exit code 143"
 grep -q '^dvi: run: signal 15 ended the run at t' err.txt || wrong "a signal: $(cat err.txt)"
 tail -n 1 long.csv | grep -q '^[0-9.]*,[0-9.]*$' || wrong "a signal: the last row is not complete"
+
+# By midpoint any number of processes writes the same rows, which are those of one up to roundoff.
+{ cat wave.yaml; echo 'potential: 1 - cos(u)'; } >kink.yaml
+for ranks in 2 3; do
+  mpirun -n $ranks "$dvi" run kink.yaml --method midpoint --h 0.05 --every 5 >rows$ranks.csv ||
+    wrong "$ranks processes: no rows by midpoint"
+done
+cmp rows2.csv rows3.csv || wrong "two and three processes write other rows by midpoint"
+"$dvi" run kink.yaml --method midpoint --h 0.05 --every 5 >rows1.csv || wrong "midpoint fails"
+paste -d , rows1.csv rows3.csv | awk -F , '
+  NR == 1 { if ($1 != $3 || $2 != $4) exit 1; next }
+  $1 != $3 || ($2 - $4) ^ 2 > 1e-26 { exit 1 }
+  END { if (NR != 6) exit 1 }' || wrong "midpoint: $(cat rows3.csv), and of one $(cat rows1.csv)"
 exit $rc
