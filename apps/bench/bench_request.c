@@ -166,6 +166,20 @@ static const char *const details[] = {
     "step_upper,alone_seconds,alone_lower,alone_upper,gain,step_evaluations; seconds are those of "
     "one step of one member,\n"
     "on one thread, and gain is their ratio.\n",
+    "--scale ranks=1,2,4,...,1e5: ranks that share the mesh of a wave or of Maxwell's field, by "
+    "leapfrog. Those that mpirun started\n"
+    "are measured; without mpirun, dvi starts as many as there are cores, 4 at most. A model "
+    "predicts the others (docs/fields/\n"
+    "scaling.md): the largest share of cuts of the mesh marches alone, messages between two "
+    "processes are timed, and the triad\n"
+    "of STREAM beside them. Runs with more ranks than cores are in the table, and not in the "
+    "model. "
+    "--weak n multiplies the\n"
+    "parameter n by the number of ranks in runs of their own, so that cells grow with the ranks. "
+    "Columns: scaling,problem,ranks,\n"
+    "rank_cells,step_seconds,efficiency,exchange,messages,bytes,measured_seconds,"
+    "measured_efficiency,oversubscribed,\n"
+    "measured_lower,measured_upper,cells (the last three in CSV alone).\n",
     "Processor, compiler and flags are printed, and the time of 1e8 dependent multiplications, "
     "measured once a round:\n"
     "it tells times of two machines or two hours apart. Beside codes of SUNDIALS the report has "
@@ -185,7 +199,9 @@ static const char *const details[] = {
     "  dvi bench fpu --method galerkin --scale degree=1,2,4,8,16\n"
     "  dvi bench chain --set n=1e6 --method verlet --method composition:order=8 --scale "
     "threads=1,2\n"
-    "  dvi bench kepler --method verlet --method galerkin:degree=2 --scale members=1,64,4096\n",
+    "  dvi bench kepler --method verlet --method galerkin:degree=2 --scale members=1,64,4096\n"
+    "  mpirun -np 4 dvi bench box.yaml --scale ranks=1,2,4,...,1e5 --weak n --latency 1.5e-6 "
+    "--bandwidth 12.5e9\n",
     NULL,
 };
 
@@ -222,7 +238,20 @@ static const option command_options[] = {
     {.name = "scale",
      OPTION_AT(bench_request, scale),
      .value = "NAME=V,V...",
-     .help = "measure steps instead, as a parameter, the degree, the threads or an ensemble grow"},
+     .help = "measure steps instead, as a parameter, the degree, the threads, an ensemble or the "
+             "ranks grow"},
+    {.name = "weak",
+     OPTION_AT(bench_request, weak),
+     .value = "NAME",
+     .help = "of --scale ranks: measure ranks with this parameter times their number, too"},
+    {.name = "latency",
+     OPTION_AT(bench_request, latency),
+     .value = "SECONDS",
+     .help = "of --scale ranks: of a message in the network to be predicted; default: measured"},
+    {.name = "bandwidth",
+     OPTION_AT(bench_request, bandwidth),
+     .value = "BYTES",
+     .help = "of --scale ranks: its bytes a second; default: measured"},
     {.name = "h",
      OPTION_AT(bench_request, h),
      .value = "H",
@@ -276,7 +305,11 @@ static const command_line command = {
 
 bool bench_request_read(int argc, char **argv, bench_request *r, int *exit_code)
 {
-  *r = (bench_request){.t_end = (double)NAN, .h = (double)NAN, .rounds = ROUNDS_DEFAULT};
+  *r = (bench_request){.latency = (double)NAN,
+                       .bandwidth = (double)NAN,
+                       .t_end = (double)NAN,
+                       .h = (double)NAN,
+                       .rounds = ROUNDS_DEFAULT};
   if (!options_parse(&command, argc, argv, r, &r->name, exit_code)) return false;
   *exit_code = bench_check_request(r);
   return *exit_code == DONE;

@@ -15,8 +15,10 @@ typedef struct bench_request {
   const char *name; /**< name of the problem */
   bench_outputs outputs;
   const char *at, *scale, *judged_by;
-  double t_end, h; /**< NaN for the problem's values */
-  long levels;     /**< 0 for a choice, which more levels may follow */
+  const char *weak;          /**< of --scale ranks= */
+  double latency, bandwidth; /**< of --scale ranks=, NaN if not given */
+  double t_end, h;           /**< NaN for the problem's values */
+  long levels;               /**< 0 for a choice, which more levels may follow */
   long rounds;
   long steps; /**< steps of --scale, 0 for its own */
   words methods, transforms, settings, against, axes;

@@ -18,6 +18,9 @@
 #include "load/open_march.h"
 #include "cli/progress.h"
 #include "bench/scale.h"
+#include "load/scene.h"
+#include "module/ranks.h"
+#include "scaling/ranks_bench.h"
 #include "bench/whole_job.h"
 #include "mechanics/motion_study.h"
 
@@ -258,6 +261,48 @@ static int bench_problem(bench_request *request, const problem *scene)
   return code == DONE ? bench_measure(&b) : code;
 }
 
+/* Check what is for ranks, and for nothing else. */
+static int check_ranks(const bench_request *r)
+{
+  const bool is_ranks = rank_counts_asked(r->scale);
+  const double number[] = {r->latency, r->bandwidth};
+  if (!is_ranks && ranks_count() > 1)
+    return usage_error("bench: %d processes share --scale ranks= alone; leave mpirun out",
+                       ranks_count());
+  if (!is_ranks && (r->weak != NULL || !isnan(r->latency) || !isnan(r->bandwidth)))
+    return usage_error("bench: --weak, --latency and --bandwidth go with --scale ranks=");
+  if (!is_ranks) return DONE;
+  for (int i = 0; i < 2; i++)
+    if (!isnan(number[i]) && !(isfinite(number[i]) && number[i] > 0))
+      return usage_error("bench: --%s wants a number above 0", i == 0 ? "latency" : "bandwidth");
+  if (r->one_point) return usage_error("bench: --scale ranks=: --one-point has no meaning there");
+  for (int i = 0; i < r->methods.count; i++)
+    if (strcmp(r->methods.word[i], "leapfrog") != 0)
+      return usage_error("bench: --scale ranks=: ranks share leapfrog alone, not %s",
+                         r->methods.word[i]);
+  return scene_is_path(r->name) ? DONE
+                                : usage_error("bench: --scale ranks=: ranks share the mesh of a "
+                                              "scene's field, and '%s' is no scene",
+                                              r->name);
+}
+
+static int scale_ranks(const bench_request *r, int argc, char **argv)
+{
+  enum { STEPS_DEFAULT = 32 };
+  const ranks_request request = {.timed = {.scene = r->name,
+                                           .settings = &r->settings,
+                                           .h = r->h,
+                                           .rounds = r->rounds,
+                                           .steps = r->steps > 0 ? r->steps : STEPS_DEFAULT},
+                                 .scaled = r->scale,
+                                 .weak = r->weak,
+                                 .latency = r->latency,
+                                 .bandwidth = r->bandwidth,
+                                 .csv = r->outputs.csv,
+                                 .plot = r->outputs.plot};
+  return ranks_count() > 1 ? ranks_bench_run(&request) : ranks_bench_start(&request, argc, argv);
+}
+
 static int scale_problem(const bench_request *r)
 {
   const scale_request request = {.problem = r->name,
@@ -273,12 +318,15 @@ static int scale_problem(const bench_request *r)
   return members_asked(r->scale) ? members_run(&request) : scale_run(&request);
 }
 
-int bench_command(int argc, char **argv)
+static int bench_alone(int argc, char **argv)
 {
   bench_request request;
   int code;
   problem *scene;
   if (!bench_request_read(argc, argv, &request, &code)) return code;
+  code = check_ranks(&request);
+  if (code != DONE) return code;
+  if (rank_counts_asked(request.scale)) return scale_ranks(&request, argc, argv);
   if (request.scale != NULL) return scale_problem(&request);
   code = open_shaped(request.name, &request.settings, request.one_point, &scene);
   if (code != DONE) return code;
@@ -286,4 +334,10 @@ int bench_command(int argc, char **argv)
   if (code == DONE) code = bench_problem(&request, scene);
   problem_destroy(&scene);
   return code;
+}
+
+int bench_command(int argc, char **argv)
+{
+  const int code = ranks_begin();
+  return ranks_end(code == DONE ? bench_alone(argc, argv) : code);
 }

@@ -201,7 +201,7 @@ static int explain_shares(const explain_request *r, const char *name)
   problem *scene;
   int code = open_any(name, &r->settings, &scene);
   if (code != DONE) return code;
-  code = share_check("explain", scene, r->method);
+  code = share_check("explain", scene, r->method, false);
   if (code == DONE && (r->how.transform != NULL || r->how.control != NULL))
     code = usage_error("explain: leapfrog is a march of a field, whose steps follow no monitor");
   if (code == DONE) {

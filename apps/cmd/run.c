@@ -257,7 +257,7 @@ static int check_shared(const run_request *request, const problem *scene)
                {"checkpoint", request->checkpoint},
                {"resume", request->resume}};
   if (ranks_count() == 1) return DONE;
-  const int code = share_check("run", scene, request->method);
+  const int code = share_check("run", scene, request->method, true);
   if (code != DONE) return code;
   for (size_t i = 0; i < sizeof whole / sizeof *whole; i++)
     if (whole[i].given != NULL)

@@ -189,19 +189,25 @@ static int refuse_folder(const char *path)
       "'%s' is a folder, and no scene: that is a file; dvi init NAME.yaml writes one", path);
 }
 
-int scene_open(const char *path, const words *settings, problem **scene)
+int scene_open_share(const char *path, const words *settings, const dvi_scene_division *division,
+                     problem **scene)
 {
   char message[MESSAGE_SIZE] = "";
   dvi_scene *read = NULL;
   *scene = NULL;
   if (is_folder(path)) return refuse_folder(path);
-  const dvi_scene_division division = {.size = sizeof division, .divide = ranks_divide};
-  const dvi_status status =
-      ranks_count() > 1
-          ? dvi_scene_read_share(path, &division, settings->count, settings->word, &read, message,
-                                 sizeof message)
-          : dvi_scene_read(path, settings->count, settings->word, &read, message, sizeof message);
+  const dvi_status status = division != NULL ? dvi_scene_read_share(path, division, settings->count,
+                                                                    settings->word, &read, message,
+                                                                    sizeof message)
+                                             : dvi_scene_read(path, settings->count, settings->word,
+                                                              &read, message, sizeof message);
   return scene_exit_code(path, status, message, read, scene);
+}
+
+int scene_open(const char *path, const words *settings, problem **scene)
+{
+  const dvi_scene_division division = {.size = sizeof division, .divide = ranks_divide};
+  return scene_open_share(path, settings, ranks_count() > 1 ? &division : NULL, scene);
 }
 
 int scene_parse(const char *path, const scene_text *text, const words *settings, problem **scene)

@@ -1,6 +1,8 @@
 /** Scene files as problems. */
 #ifndef SCENE_H
 #define SCENE_H
+#include <dvi/scene.h>
+
 #include "cli/options.h"
 #include "cli/outputs.h"
 #include "problem.h"
@@ -11,6 +13,10 @@ bool scene_is_path(const char *name);
 /** Read a scene as a problem, with its "name=value" settings. Returns DONE, or complains and
  * returns the exit code. */
 int scene_open(const char *path, const words *settings, problem **scene);
+
+/** Read a scene on the share that a division cuts, or on the whole mesh if that is NULL. */
+int scene_open_share(const char *path, const words *settings, const dvi_scene_division *division,
+                     problem **scene);
 
 /** The text of a scene's file, to be read many times with different settings. */
 typedef struct scene_text {

@@ -12,20 +12,29 @@
 
 enum { RANKS_SHOWN = 16 };
 
-int share_check(const char *command, const problem *scene, const char *method)
+int share_check(const char *command, const problem *scene, const char *method, bool takes_solids)
 {
-  if (scene->scene == NULL || !dvi_scene_marches(scene->scene, "leapfrog"))
-    return usage_error("%s: %d processes share a scene of waves or of Maxwell's field on a mesh, "
-                       "and %s is none; leave mpirun out",
-                       command, ranks_count(), scene->name);
+  const bool is_solid = takes_solids && scene->scene != NULL &&
+                        dvi_scene_elastic(scene->scene) != NULL;
+  if (scene->scene == NULL || !(is_solid || dvi_scene_marches(scene->scene, "leapfrog")))
+    return usage_error("%s: %d processes share a scene of waves%s Maxwell's field%s on a mesh, and "
+                       "%s is none; leave mpirun out",
+                       command, ranks_count(), takes_solids ? ", of" : " or of",
+                       takes_solids ? " or of a solid" : "", scene->name);
   if (method == NULL) method = scene->method;
-  if (method != NULL && strcmp(method, "leapfrog") == 0) return DONE;
-  const bool is_wave = dvi_scene_marches(scene->scene, "midpoint"); /* which shares of waves have */
-  if (is_wave && method != NULL && strcmp(method, "midpoint") == 0) return DONE;
-  return usage_error("%s: %d processes share leapfrog%s, not %s; give --method leapfrog, or leave "
-                     "mpirun out",
-                     command, ranks_count(), is_wave ? " and midpoint" : " alone",
-                     method != NULL ? method : "another method");
+  /* shares of waves have midpoint, too */
+  const bool is_wave = !is_solid && dvi_scene_marches(scene->scene, "midpoint");
+  if (method != NULL &&
+      (is_solid ? dvi_scene_marches(scene->scene, method)
+                : strcmp(method, "leapfrog") == 0 || (is_wave && strcmp(method, "midpoint") == 0)))
+    return DONE;
+  return usage_error("%s: %d processes share %s alone, not %s; give --method %s, or leave mpirun "
+                     "out",
+                     command, ranks_count(),
+                     is_solid  ? "avi and verlet"
+                     : is_wave ? "leapfrog and midpoint"
+                               : "leapfrog",
+                     method != NULL ? method : "another method", is_solid ? "avi" : "leapfrog");
 }
 
 static const table_column columns[] = {

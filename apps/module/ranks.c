@@ -2,6 +2,7 @@
 #include "module/ranks.h"
 
 #include <dlfcn.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -95,11 +96,25 @@ int ranks_begin(void)
   return FAILED;
 }
 
+int ranks_check_module(void)
+{
+  const void *library = dlopen(module_name, RTLD_LAZY | RTLD_LOCAL);
+  if (library != NULL) return DONE;
+  return usage_error("this dvi has no module for processes that share a mesh (%s); build dvi with "
+                     "-DDVI_PETSC=ON",
+                     dlerror());
+}
+
 /* ---- the run ---- */
 
 int ranks_count(void)
 {
   return rank_count;
+}
+
+int ranks_number(void)
+{
+  return own_rank;
 }
 
 bool ranks_is_first(void)
@@ -155,6 +170,51 @@ dvi_status ranks_divide(const dvi_mesh *mesh, dvi_mesh **share, void *user)
 void ranks_tell(int rank, int degree, mesh_division *division)
 {
   module->tell(rank, degree, division);
+}
+
+/* ---- measurements among some of the processes ---- */
+
+bool ranks_among(int count)
+{
+  bool takes_part = false;
+  if (!module->among(count, &takes_part)) abandon(FAILED);
+  return takes_part;
+}
+
+int ranks_rest(int code)
+{
+  int worst = code;
+  if (!module->rest(code, &worst)) abandon(code != DONE ? code : FAILED);
+  is_echo = code == DONE && worst != DONE;
+  return code != DONE ? code : worst;
+}
+
+bool ranks_gather(const void *own, size_t size, void *all)
+{
+  if (module->gather(own, size, all)) return true;
+  complain("the processes could not speak with each other");
+  return false;
+}
+
+int ranks_on_machine(void)
+{
+  int most = 0;
+  return module->on_machine(&most) ? most : 0;
+}
+
+dvi_status ranks_refresh(int degree, double *values)
+{
+  return module->refresh(degree, values);
+}
+
+double ranks_ping(void *bytes, int size, int times)
+{
+  return own_rank < 2 ? module->ping(bytes, size, times) : (double)NAN;
+}
+
+dvi_status ranks_partition(const dvi_mesh *mesh, int parts, int *owner)
+{
+  return module->partition(mesh, parts, owner);
 }
 
 /* ---- the end ---- */

@@ -12,8 +12,14 @@
 /** Join the others, if there are any. Returns DONE, or complains and returns the exit code. */
 int ranks_begin(void);
 
+/** Check that this dvi could join others. Returns DONE, or complains and returns USAGE. */
+int ranks_check_module(void);
+
 /** Return the number of processes, 1 without others. */
 int ranks_count(void);
+
+/** Return the number of this process, from 0. */
+int ranks_number(void);
 
 /** Tell if this process is the first one, which writes files. */
 bool ranks_is_first(void);
@@ -30,6 +36,35 @@ dvi_status ranks_divide(const dvi_mesh *mesh, dvi_mesh **share, void *user);
 
 /** Give the share of process `rank`, of forms of a degree. Called by all processes. */
 void ranks_tell(int rank, int degree, mesh_division *division);
+
+/* ---- measurements among some of the processes ---- */
+
+/** Let the first `count` processes work from now on: ranks_divide, ranks_tell and what follows is
+ *  for them. Called by all processes. Returns whether this one is among them. */
+bool ranks_among(int count);
+
+/** Agree with all processes on an exit code, as ranks_agree. Those without work sleep until the
+ *  others come. */
+int ranks_rest(int code);
+
+/** Gather what each of the working processes has, of a size in bytes. Returns false, and complains,
+ *  if they cannot be reached. */
+bool ranks_gather(const void *own, size_t size, void *all);
+
+/** Return the most of the working processes that share one machine, or 0. */
+int ranks_on_machine(void);
+
+/** Refresh a form of the mesh that was divided last. */
+dvi_status ranks_refresh(int degree, double *values);
+
+/** Return the seconds in which bytes [size] get from the first process to the second one. NaN in
+ *  other processes, and if it failed. Called by all processes that work. */
+double ranks_ping(void *bytes, int size, int times);
+
+/** Find owners [cells of the highest degree] among any number of processes, in this one alone. */
+dvi_status ranks_partition(const dvi_mesh *mesh, int parts, int *owner);
+
+/* ---- the end ---- */
 
 /** Leave the others, with this process's exit code. Returns that of the whole: it is not DONE in
  *  the first process alone. Does not return if the others cannot be reached any more. */

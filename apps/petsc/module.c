@@ -2,6 +2,7 @@
 #include "petsc/petsc_module.h"
 
 #include <dvi/petsc.h>
+#include <math.h>
 #include <stddef.h>
 #include <time.h>
 
@@ -12,6 +13,7 @@
 enum { PATIENCE = 2000, PAUSE = 5 }; /* milliseconds */
 
 static dvi_division *division;
+static MPI_Comm workers = MPI_COMM_WORLD; /* the processes among which there is work */
 
 static bool start(int *rank, int *count)
 {
@@ -28,7 +30,8 @@ static bool start(int *rank, int *count)
 static dvi_status divide(const dvi_mesh *mesh, dvi_mesh **share)
 {
   dvi_division_destroy(&division);
-  return dvi_mesh_divide(mesh, NULL, share, &division);
+  const dvi_division_options options = {.size = sizeof options, .comm = workers};
+  return dvi_mesh_divide(mesh, &options, share, &division);
 }
 
 static void tell(int rank, int degree, mesh_division *told)
@@ -37,15 +40,17 @@ static void tell(int rank, int degree, mesh_division *told)
   int n = DVI_MESH_DIMENSION_MAX;
   dvi_division_facts_of(division, &facts);
   while (n > 0 && facts.owned[n] == 0) n--;
-  int64_t number[] = {facts.owned[n], facts.ghosts[n], facts.bytes_in[degree],
-                      facts.messages_in[degree], facts.neighbours};
-  (void)MPI_Bcast(number, sizeof number / sizeof *number, MPI_INT64_T, rank, MPI_COMM_WORLD);
+  int64_t number[] = {facts.owned[n],         facts.ghosts[n],
+                      facts.bytes_in[degree], facts.messages_in[degree],
+                      facts.neighbours,       facts.agreements};
+  (void)MPI_Bcast(number, sizeof number / sizeof *number, MPI_INT64_T, rank, workers);
   *told = (mesh_division){.partitioner = facts.partitioner,
                           .owned = number[0],
                           .ghosts = number[1],
                           .bytes_in = number[2],
                           .messages_in = (int)number[3],
-                          .neighbours = (int)number[4]};
+                          .neighbours = (int)number[4],
+                          .agreements = number[5]};
 }
 
 /* Wait until a request is met, for good or only for a while. */
@@ -77,9 +82,93 @@ static bool meet(const rank_end *own, rank_end *all)
          is_met(request, own->code != 0);
 }
 
-static void end(void)
+/* ---- measurements among some of the processes ---- */
+
+static void dismiss(void)
 {
   dvi_division_destroy(&division);
+  if (workers != MPI_COMM_WORLD && workers != MPI_COMM_NULL) (void)MPI_Comm_free(&workers);
+  workers = MPI_COMM_WORLD;
+}
+
+static bool among(int count, bool *takes_part)
+{
+  int rank = 0;
+  dismiss();
+  (void)MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  *takes_part = rank < count;
+  if (MPI_Comm_split(MPI_COMM_WORLD, *takes_part ? 0 : MPI_UNDEFINED, rank, &workers) !=
+      MPI_SUCCESS)
+    return false;
+  return !*takes_part || MPI_Comm_set_errhandler(workers, MPI_ERRORS_RETURN) == MPI_SUCCESS;
+}
+
+static bool rest(int number, int *all)
+{
+  const struct timespec pause = {.tv_nsec = PAUSE * 1000000L};
+  MPI_Request request;
+  int met = 0;
+  if (MPI_Iallreduce(&number, all, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD, &request) != MPI_SUCCESS)
+    return false;
+  while (MPI_Test(&request, &met, MPI_STATUS_IGNORE) == MPI_SUCCESS && !met)
+    (void)nanosleep(&pause, NULL);
+  return met;
+}
+
+static bool gather(const void *own, size_t size, void *all)
+{
+  return MPI_Allgather(own, (int)size, MPI_BYTE, all, (int)size, MPI_BYTE, workers) == MPI_SUCCESS;
+}
+
+static bool on_machine(int *most)
+{
+  MPI_Comm machine = MPI_COMM_NULL;
+  if (MPI_Comm_split_type(workers, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine) != MPI_SUCCESS)
+    return false;
+  (void)MPI_Comm_size(machine, most);
+  (void)MPI_Comm_free(&machine);
+  return MPI_Allreduce(MPI_IN_PLACE, most, 1, MPI_INT, MPI_MAX, workers) == MPI_SUCCESS;
+}
+
+static dvi_status refresh(int degree, double *values)
+{
+  return dvi_division_refresh(division, degree, values);
+}
+
+/* Send there and back once. */
+static int bounce(int rank, void *bytes, int size)
+{
+  const int code = rank == 0 ? MPI_Send(bytes, size, MPI_BYTE, 1, 0, workers)
+                             : MPI_Recv(bytes, size, MPI_BYTE, 0, 0, workers, MPI_STATUS_IGNORE);
+  if (code != MPI_SUCCESS) return code;
+  return rank == 0 ? MPI_Recv(bytes, size, MPI_BYTE, 1, 0, workers, MPI_STATUS_IGNORE)
+                   : MPI_Send(bytes, size, MPI_BYTE, 0, 0, workers);
+}
+
+static double ping(void *bytes, int size, int times)
+{
+  enum { MEANS = 5 };
+  int rank = 0, code = MPI_SUCCESS;
+  double least = INFINITY;
+  (void)MPI_Comm_rank(workers, &rank);
+  for (int i = 0; i <= MEANS; i++) {
+    const double began = MPI_Wtime();
+    for (int k = 0; k < times && code == MPI_SUCCESS; k++) code = bounce(rank, bytes, size);
+    /* the first mean makes the connection */
+    if (i > 0) least = fmin(least, (MPI_Wtime() - began) / times / 2);
+  }
+  return code == MPI_SUCCESS ? least : (double)NAN;
+}
+
+static dvi_status partition(const dvi_mesh *mesh, int parts, int *owner)
+{
+  const dvi_division_options options = {.size = sizeof options, .comm = MPI_COMM_SELF};
+  return dvi_mesh_partition(mesh, &options, parts, owner);
+}
+
+static void end(void)
+{
+  dismiss();
   (void)PetscPopErrorHandler();
   (void)PetscFinalize();
 }
@@ -95,6 +184,13 @@ const petsc_module dvi_petsc = {
     .tell = tell,
     .largest = largest,
     .meet = meet,
+    .among = among,
+    .rest = rest,
+    .gather = gather,
+    .on_machine = on_machine,
+    .refresh = refresh,
+    .ping = ping,
+    .partition = partition,
     .end = end,
     .abandon = abandon,
 };

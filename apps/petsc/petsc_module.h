@@ -14,6 +14,7 @@ typedef struct mesh_division {
   int64_t bytes_in;      /**< of a form, once */
   int messages_in;       /**< that bring them */
   int neighbours;        /**< processes that own ghosts */
+  int64_t agreements;    /**< of all processes so far */
 } mesh_division;
 
 /** What a process has at its end. */
@@ -41,6 +42,31 @@ typedef struct petsc_module {
 
   /** Give the ends [count] of all processes. Waits and returns likewise. */
   bool (*meet)(const rank_end *own, rank_end *all);
+
+  /** Let the first `count` processes divide meshes, and gather, from now on. Called by all
+   * processes. Gives whether this one is among them. Returns whether it worked. */
+  bool (*among)(int count, bool *takes_part);
+
+  /** Find the largest of all processes' numbers. Those that take no part in the work of others
+   *  sleep until they come. Returns whether they have come. */
+  bool (*rest)(int number, int *all);
+
+  /** Gather what each of the processes among which there is work has, of a size in bytes. */
+  bool (*gather)(const void *own, size_t size, void *all);
+
+  /** Give the most of these processes that share one machine. */
+  bool (*on_machine)(int *most);
+
+  /** Refresh a form of the division. */
+  dvi_status (*refresh)(int degree, double *values);
+
+  /** Measure the seconds in which bytes [size] get from the first process to the second one, half
+   *  of the way there and back, the least of a few means. Called by these two. NaN if it failed. */
+  double (*ping)(void *bytes, int size, int times);
+
+  /** Find owners of a mesh's cells of highest degree, among any number of processes, in this one
+   * alone. */
+  dvi_status (*partition)(const dvi_mesh *mesh, int parts, int *owner);
 
   /** Release the division, and end PETSc and MPI. */
   void (*end)(void);

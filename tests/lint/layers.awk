@@ -101,10 +101,11 @@ BEGIN {
   uses["mechanics"] = uses["study"] " study load"
   uses["store"] = "cli csv load hdf5 module"
   uses["bench"] = uses["mechanics"] " mechanics"
+  uses["scaling"] = uses["bench"] " bench module"
   uses["frames"] = "cli plot picture hdf5 module"
   uses["watch"] = uses["bench"] " picture hdf5 module store frames"
   uses["view"] = "cli csv load picture module"
-  uses["cmd"] = uses["watch"] " module watch bench sweep boundary varied view"
+  uses["cmd"] = uses["watch"] " module watch bench scaling sweep boundary varied view"
   uses["main.c"] = "cli"
   # Single headers of other rooms that a room may include.
   also["reference solve/sundials.h"] = 1

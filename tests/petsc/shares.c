@@ -52,6 +52,46 @@ static int64_t count_wrong(const dvi_division_facts *facts, const dvi_mesh *shar
   return wrong + (facts->rank != rank) + (facts->ranks != ranks);
 }
 
+/* A partition has as many owners as it is asked for, whatever the number of processes. */
+static void check_partition(const dvi_mesh *mesh, const char *partitioner)
+{
+  enum { PARTS = 5 };
+  const dvi_division_options options = {.size = sizeof options, .partitioner = partitioner};
+  const int64_t cells = dvi_mesh_count(mesh, dvi_mesh_dimension(mesh));
+  int64_t owned[PARTS] = {0}, wrong = 0;
+  int *owner = DVI_NEW(int, cells);
+  expect(dvi_mesh_partition(mesh, &options, PARTS, owner) == DVI_OK, "no partition", partitioner);
+  for (int64_t c = 0; c < cells; c++) {
+    wrong += owner[c] < 0 || owner[c] >= PARTS;
+    if (owner[c] >= 0 && owner[c] < PARTS) owned[owner[c]]++;
+  }
+  for (int p = 0; p < PARTS; p++) wrong += owned[p] < cells / PARTS / 2;
+  expect(wrong == 0, "a wrong partition", partitioner);
+  expect(dvi_mesh_partition(mesh, &options, 0, owner) == DVI_BAD_ARGUMENT, "0 parts", partitioner);
+  expect(dvi_mesh_partition(mesh, &options, (int)cells + 1, owner) == DVI_BAD_ARGUMENT,
+         "too many parts", partitioner);
+  dvi__release(owner);
+}
+
+/* The owners' values come to all others, as from the library's own refresh. */
+static void check_refresh(const dvi_mesh *share, dvi_division *division)
+{
+  int64_t wrong = 0;
+  for (int k = 0; k <= dvi_mesh_dimension(share); k++) {
+    double *values = DVI_NEW(double, dvi_mesh_count(share, k));
+    for (int64_t c = 0; c < dvi_mesh_count(share, k); c++)
+      values[c] = dvi_mesh_share_owners(share, k)[c] == rank
+                      ? (double)dvi_mesh_share_numbers(share, k)[c]
+                      : -1;
+    wrong += dvi_division_refresh(division, k, values) != DVI_OK;
+    for (int64_t c = 0; c < dvi_mesh_count(share, k); c++)
+      wrong += values[c] != (double)dvi_mesh_share_numbers(share, k)[c];
+    dvi__release(values);
+  }
+  expect(wrong == 0, "a wrong refresh", "");
+  expect(dvi_division_refresh(division, 9, NULL) == DVI_BAD_ARGUMENT, "no values", "");
+}
+
 static void check_division(const dvi_mesh *mesh, const whole_run *whole, const char *partitioner)
 {
   const dvi_division_options options = {.size = sizeof options, .partitioner = partitioner};
@@ -65,6 +105,8 @@ static void check_division(const dvi_mesh *mesh, const whole_run *whole, const c
   expect(count_wrong(&facts, share, mesh) == 0, "wrong facts", partitioner);
   expect(strcmp(facts.partitioner, partitioner) == 0, "wrong name", partitioner);
   expect(run_share(share, rank, whole) == 0, "other bits", partitioner);
+  check_refresh(share, division);
+  check_partition(mesh, partitioner);
   dvi_mesh_destroy(&share);
   dvi_division_destroy(&division);
 }

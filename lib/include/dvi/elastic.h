@@ -223,10 +223,36 @@ dvi_status dvi_elastic_modes(const dvi_elastic *elastic, const dvi_modes_options
 dvi_status dvi_elastic_system(dvi_elastic *elastic, dvi_system **system);
 
 /** Give the terms from which dvi_elastic_system makes a system, to add others to them. Their arrays
- *  are the solid's.
+ *  are the solid's. On the share of a mesh there are only the dimension, which is the number of
+ *  unknowns of the share, and the symmetries of the whole solid, without generators.
  *
  *  @retval (others)  as dvi_elastic_fastest */
 dvi_status dvi_elastic_system_terms(dvi_elastic *elastic, dvi_system_terms *terms);
+
+/** Agree with the other processes that share the solid (dvi_mesh_cut) whether all have succeeded so
+ *  far. If not, all fail with the same status. Called on all of them.
+ *
+ *  @retval DVI_CALLBACK_FAILED  the processes cannot speak with each other */
+dvi_status dvi_elastic_agree(const dvi_elastic *elastic, dvi_status status);
+
+/** Find the cell that contains a point of the reference. Of several that share it, the one with the
+ *  lowest number in the whole mesh is taken. Called on all processes that share the solid.
+ *
+ *  @param[in]  at      [n]
+ *  @param[out] cell    its number, or -1 where another process is its owner
+ *  @param[out] weight  [n+1] barycentric coordinates of the point, if the cell is here
+ *  @retval DVI_BAD_ARGUMENT  the point is outside, or not finite, or an argument is missing
+ *  @retval (others)          as dvi_elastic_agree and dvi_mesh_locate */
+dvi_status dvi_elastic_locate(const dvi_elastic *elastic, const double *at, int *cell,
+                              double *weight);
+
+/** Set numbers to their sums over all processes that share the solid, exact until they are rounded
+ *  once. Called on all of them.
+ *
+ *  @param[in,out] number  [count]
+ *  @retval DVI_BAD_ARGUMENT  an argument is missing
+ *  @retval (others)          as dvi_elastic_agree */
+dvi_status dvi_elastic_sum(const dvi_elastic *elastic, int count, double *number);
 
 /** Create a march of a solid.
  *

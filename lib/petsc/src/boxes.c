@@ -1,11 +1,12 @@
 /* Grids of boxes that are divided along one axis: planes go to the two neighbours only, which needs
  * no DMDA. */
 #include <dvi/petsc.h>
-#include <limits.h>
 
 #include "core/memory.h"
 #include "core/status.h"
 #include "world.h"
+
+enum { MOST = 1 << 28 }; /* numbers in a message */
 
 /* Give the process that is that far, or none. */
 static int process_at(const dvi__world *world, int away, int around)
@@ -15,14 +16,19 @@ static int process_at(const dvi__world *world, int away, int around)
   return around ? (at + world->count) % world->count : MPI_PROC_NULL;
 }
 
+/* MPI counts by int. */
 static int pass(int way, int around, int64_t count, const double *sent, double *received,
                 void *user)
 {
   const dvi__world *world = user;
-  if (count > INT_MAX) return MPI_ERR_COUNT;
-  return MPI_Sendrecv(sent, (int)count, MPI_DOUBLE, process_at(world, way, around), 0, received,
-                      (int)count, MPI_DOUBLE, process_at(world, -way, around), 0, world->comm,
-                      MPI_STATUS_IGNORE);
+  const int to = process_at(world, way, around), from = process_at(world, -way, around);
+  int failed = MPI_SUCCESS;
+  for (int64_t done = 0; done < count && failed == MPI_SUCCESS; done += MOST) {
+    const int next = (int)(count - done < MOST ? count - done : MOST);
+    failed = MPI_Sendrecv(sent + done, next, MPI_DOUBLE, to, 0, received + done, next, MPI_DOUBLE,
+                          from, 0, world->comm, MPI_STATUS_IGNORE);
+  }
+  return failed;
 }
 
 dvi_status dvi_yee_ranks_create(MPI_Comm comm, dvi_yee_ranks **ranks)

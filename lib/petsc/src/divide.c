@@ -141,8 +141,9 @@ static dvi_status choose(const dvi_division_options *options, dvi_division *divi
   return DVI_OK;
 }
 
-/* The processes have the same mesh, as far as the numbers of cells tell, with enough cells. */
-static dvi_status check_mesh(const dvi_mesh *mesh, const dvi__world *world)
+/* The processes have the same mesh, as far as the numbers of cells tell, with enough cells for the
+ * parts. */
+static dvi_status check_mesh(const dvi_mesh *mesh, const dvi__world *world, int parts)
 {
   int64_t count[2 * DEGREES] = {0};
   const int n = dvi_mesh_dimension(mesh);
@@ -159,15 +160,16 @@ static dvi_status check_mesh(const dvi_mesh *mesh, const dvi__world *world)
                        "petsc: the mesh is not the same on all processes: they "
                        "have %lld to %lld cells of degree %d",
                        (long long)-count[2 * k + 1], (long long)count[2 * k], k);
-  if (count[2 * n] >= world->count) return DVI_OK;
+  if (count[2 * n] >= parts) return DVI_OK;
   return dvi__fail(DVI_BAD_ARGUMENT, "petsc: %d processes cannot share %lld cells: take fewer",
-                   world->count, (long long)count[2 * n]);
+                   parts, (long long)count[2 * n]);
 }
 
 static dvi_status make(const dvi_mesh *mesh, dvi_division *division, dvi_mesh **share)
 {
   const dvi__world *world = &division->world;
-  const dvi__divider divider = {.world = world, .partitioner = division->partitioner};
+  const dvi__divider divider = {
+      .world = world, .parts = world->count, .partitioner = division->partitioner};
   const dvi_ranks ranks = {.size = sizeof ranks,
                            .rank = world->rank,
                            .count = world->count,
@@ -176,7 +178,7 @@ static dvi_status make(const dvi_mesh *mesh, dvi_division *division, dvi_mesh **
                            .largest = dvi__world_largest,
                            .user = division,
                            .solver = &dvi__solver_of_petsc};
-  DVI_TRY(check_mesh(mesh, world));
+  DVI_TRY(check_mesh(mesh, world, world->count));
   int *owner = DVI_NEW(int, dvi_mesh_count(mesh, dvi_mesh_dimension(mesh)));
   dvi_status status = dvi__world_agree(
       world, owner != NULL ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "petsc: no memory for owners"));
@@ -186,6 +188,33 @@ static dvi_status make(const dvi_mesh *mesh, dvi_division *division, dvi_mesh **
   return status == DVI_OK ? plant_forests(division, *share, mesh) : status;
 }
 
+static dvi_status check_options(const dvi_division_options *options)
+{
+  if (options == NULL || options->size == sizeof *options) return check_started();
+  return dvi__fail(DVI_BAD_ARGUMENT, "petsc: set options.size to sizeof(dvi_division_options)");
+}
+
+dvi_status dvi_mesh_partition(const dvi_mesh *mesh, const dvi_division_options *options, int parts,
+                              int *owner)
+{
+  dvi_division made = {.world = {.comm = MPI_COMM_NULL}};
+  if (mesh == NULL || owner == NULL || parts < 1)
+    return dvi__fail(DVI_BAD_ARGUMENT, "petsc: a mesh, a number of parts and a place for owners "
+                                       "are needed");
+  DVI_TRY(check_options(options));
+  (void)PetscPushErrorHandler(PetscReturnErrorHandler, NULL);
+  dvi_status status = choose(options, &made);
+  if (status == DVI_OK)
+    status = dvi__world_join(options != NULL ? options->comm : MPI_COMM_NULL, &made.world);
+  if (status == DVI_OK) status = check_mesh(mesh, &made.world, parts);
+  const dvi__divider divider = {
+      .world = &made.world, .parts = parts, .partitioner = made.partitioner};
+  if (status == DVI_OK) status = dvi__find_owners(mesh, &divider, owner);
+  (void)PetscPopErrorHandler();
+  dvi__world_leave(&made.world);
+  return status;
+}
+
 dvi_status dvi_mesh_divide(const dvi_mesh *mesh, const dvi_division_options *options,
                            dvi_mesh **share, dvi_division **division)
 {
@@ -193,9 +222,7 @@ dvi_status dvi_mesh_divide(const dvi_mesh *mesh, const dvi_division_options *opt
     return dvi__fail(DVI_BAD_ARGUMENT, "petsc: a mesh and places for results are needed");
   *share = NULL;
   *division = NULL;
-  if (options != NULL && options->size != sizeof *options)
-    return dvi__fail(DVI_BAD_ARGUMENT, "petsc: set options.size to sizeof(dvi_division_options)");
-  DVI_TRY(check_started());
+  DVI_TRY(check_options(options));
   dvi_division *made = DVI_NEW(dvi_division, 1);
   if (made == NULL) return dvi__fail(DVI_NO_MEMORY, "petsc: no memory");
   made->world.comm = MPI_COMM_NULL;
@@ -216,7 +243,18 @@ dvi_status dvi_mesh_divide(const dvi_mesh *mesh, const dvi_division_options *opt
 
 void dvi_division_facts_of(const dvi_division *division, dvi_division_facts *facts)
 {
-  if (division != NULL && facts != NULL) *facts = division->facts;
+  if (division == NULL || facts == NULL) return;
+  *facts = division->facts;
+  facts->agreements = division->world.agreements;
+}
+
+dvi_status dvi_division_refresh(dvi_division *division, int degree, double *values)
+{
+  if (division == NULL || values == NULL || degree < 0 || degree > DVI_MESH_DIMENSION_MAX ||
+      division->forest[degree] == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "petsc: a division, a degree of its cells and values are "
+                                       "needed");
+  return refresh(degree, values, division) == 0 ? DVI_OK : dvi__world_fail(&division->world);
 }
 
 void dvi_division_destroy(dvi_division **division)

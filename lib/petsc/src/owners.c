@@ -114,6 +114,8 @@ static dvi_status partition(const dvi__divider *divider, int64_t cells, graph *g
   if (status == DVI_OK)
     status = dvi__check_petsc(MatPartitioningSetAdjacency(partitioning, adjacency));
   if (status == DVI_OK) status = set_type(partitioning, divider->partitioner);
+  if (status == DVI_OK)
+    status = dvi__check_petsc(MatPartitioningSetNParts(partitioning, (PetscInt)divider->parts));
   if (status == DVI_OK) status = dvi__check_petsc(apply(partitioning, g, owner));
   (void)MatPartitioningDestroy(&partitioning);
   (void)MatDestroy(&adjacency);
@@ -151,8 +153,8 @@ static dvi_status find_by_graph(const dvi_mesh *mesh, const dvi__divider *divide
 dvi_status dvi__find_owners(const dvi_mesh *mesh, const dvi__divider *divider, int *owner)
 {
   const int64_t cells = dvi_mesh_count(mesh, dvi_mesh_dimension(mesh));
-  if (strcmp(divider->partitioner, "blocks") == 0 || divider->world->count == 1) {
-    for (int64_t c = 0; c < cells; c++) owner[c] = (int)(c * divider->world->count / cells);
+  if (strcmp(divider->partitioner, "blocks") == 0 || divider->parts == 1) {
+    for (int64_t c = 0; c < cells; c++) owner[c] = (int)(c * divider->parts / cells);
     return DVI_OK;
   }
   PetscInt *found = DVI_NEW(PetscInt, cells);

@@ -7,9 +7,10 @@
 
 #include "world.h"
 
-/* The processes, and the partitioner's name. */
+/* The processes, the number of parts, which may be another one, and the partitioner's name. */
 typedef struct dvi__divider {
   const dvi__world *world;
+  int parts;
   const char *partitioner;
 } dvi__divider;
 

@@ -21,14 +21,16 @@ void dvi__world_leave(dvi__world *world)
 
 int dvi__world_sum(int count, int64_t *number, void *world)
 {
-  return MPI_Allreduce(MPI_IN_PLACE, number, count, MPI_INT64_T, MPI_SUM,
-                       ((const dvi__world *)world)->comm);
+  dvi__world *w = world;
+  w->agreements++;
+  return MPI_Allreduce(MPI_IN_PLACE, number, count, MPI_INT64_T, MPI_SUM, w->comm);
 }
 
 int dvi__world_largest(int count, double *number, void *world)
 {
-  return MPI_Allreduce(MPI_IN_PLACE, number, count, MPI_DOUBLE, MPI_MAX,
-                       ((const dvi__world *)world)->comm);
+  dvi__world *w = world;
+  w->agreements++;
+  return MPI_Allreduce(MPI_IN_PLACE, number, count, MPI_DOUBLE, MPI_MAX, w->comm);
 }
 
 dvi_status dvi__world_fail(const dvi__world *world)

@@ -7,7 +7,8 @@
 
 typedef struct dvi__world {
   MPI_Comm comm;
-  int rank, count; /* this process, and how many there are */
+  int rank, count;    /* this process, and how many there are */
+  int64_t agreements; /* sums and largest numbers so far */
 } dvi__world;
 
 /* Join a copy of a communicator, whose errors are returned. MPI_COMM_NULL and 0 are all processes.

@@ -243,7 +243,7 @@ dvi_status dvi_scene_read_share(const char *path, const dvi_scene_division *divi
   dvi_status status = read_path(path, division, setting_count, settings, scene, message, size);
   if (status != DVI_OK || dvi__is_share(*scene)) return status;
   dvi_scene_tell(*scene, "lagrangian",
-                 "several processes share fields of waves and Maxwell's on "
+                 "several processes share fields of waves, Maxwell's and solids on "
                  "meshes, and this scene has none",
                  message, size);
   dvi_scene_destroy(scene);

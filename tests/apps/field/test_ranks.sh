@@ -65,6 +65,7 @@ alone() {
 }
 if [ ! -e "$(dirname "$dvi")/dvi_petsc.so" ]; then
   alone 'this dvi has no module for them'
+  said=$("$dvi" bench wave.yaml --scale ranks=1,2 2>&1) && wrong "ranks without a module: $said"
   [ $rc -eq 0 ] || exit $rc
   echo "DVI_PETSC is OFF: no tests with MPI"
   exit 77
@@ -96,6 +97,33 @@ awk -F, 'NR > 1 { cells += $3
   END { exit !(NR == 4 && cells == 324 && !wrong) }' shares.csv ||
   wrong "explain: $(cat shares.csv)"
 
+# A step is measured on processes that dvi starts, and predicted for more of them.
+"$dvi" bench torus.yaml --scale ranks=1,2,4,...,300 --rounds 1 --steps 2 --csv scale.csv \
+  >out.txt || wrong "bench: no scaling"
+for words in '^Ranks that share torus.yaml' '^triad .* of 2 processes together' \
+  '^  network: .*shared memory' '^  fit: .*the largest deviation is' '^What breaks first'; do
+  grep -q "$words" out.txt || wrong "bench: no '$words' in: $(cat out.txt)"
+done
+header=scaling,problem,ranks,rank_cells,step_seconds,efficiency,exchange,messages,bytes
+header=$header,measured_seconds,measured_efficiency,oversubscribed,measured_lower
+header=$header,measured_upper,cells
+[ "$(head -n 1 scale.csv)" = $header ] || wrong "bench: $(head -n 1 scale.csv)"
+# One rank waits for nobody, and what was measured stands in its rows alone.
+awk -F, 'NR == 1 { next }
+  { measured = $3 == 1 || ($3 == 2 && $1 == "strong")
+    if (!($5 > 0 && $6 > 0 && $7 >= 0 && $7 < 1)) bad++
+    if (($7 == 0) != ($3 == 1) || ($10 != "") != measured) bad++
+    if ($15 != ($1 == "weak" ? 324 * $3 : 324)) bad++ }
+  END { exit !(NR == 21 && !bad) }' scale.csv || wrong "bench: $(cat scale.csv)"
+# What makes no sense is refused before processes start.
+for option in '--scale ranks=1,2 --latency 0' '--scale ranks=1,2 --bandwidth nan' \
+  '--scale ranks=2,1' '--scale ranks=1,2 --method avi' '--scale ranks=1,2 --at 1e-6' \
+  '--latency 1e-6' '--scale threads=1,2 --weak n'; do
+  # shellcheck disable=SC2086
+  "$dvi" bench torus.yaml $option >out.txt 2>&1
+  [ $? -eq 2 ] || wrong "bench $option: $(cat out.txt)"
+done
+
 # refused CODE WORDS ARGUMENT...: processes end with the code, and one sentence.
 refused() {
   code=$1 words=$2
@@ -108,7 +136,7 @@ refused() {
   [ ! -s out.txt ] || wrong "$*: rows"
 }
 refused 2 'kepler is none' kepler
-refused 2 'leapfrog and midpoint, not verlet' wave.yaml --method verlet
+refused 2 'leapfrog and midpoint alone, not verlet' wave.yaml --method verlet
 refused 2 '--checkpoint needs the whole mesh' wave.yaml --checkpoint state
 refused 2 'probes of a wave need the whole mesh' probes.yaml
 # One process alone fails here, on which the others wait.

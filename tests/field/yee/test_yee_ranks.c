@@ -225,6 +225,7 @@ static dvi_march *driven_march(const dvi_yee_ranks *ranks, int *fails)
                          .dipoles = 1,
                          .wave = &wave,
                          .waves = 1,
+                         .together = 2,
                          .ranks = ranks};
   dvi_march *march = NULL;
   if (dvi_yee_create(&terms, &march) == DVI_OK)

@@ -1,6 +1,7 @@
 /* Scenes on shares of their mesh: marches have the bits of the whole mesh, and what needs the whole
  * mesh is refused. */
 #include <dvi/scene.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "support/field/generated.h"
@@ -8,7 +9,7 @@
 #include "support/files.h"
 #include "support/suite.h"
 
-enum { PROCESSES = 3, SEEN = 8, MESSAGE_SIZE = 512 };
+enum { PROCESSES = 3, SEEN = 48, MESSAGE_SIZE = 512 };
 
 /* A scene's file, and what each process observes. */
 typedef struct shared_scene {
@@ -26,13 +27,29 @@ static dvi_status take(const dvi_mesh *mesh, dvi_mesh **share, void *user)
   return DVI_OK;
 }
 
+/* Give what a solid keeps, and its probes. */
+static dvi_status probe(const dvi_scene *scene, const dvi_march *march, double *seen)
+{
+  const dvi_system_terms *terms = dvi_scene_terms(scene);
+  double *q = calloc(2 * (size_t)terms->dimension + 1, sizeof *q), *p = q + terms->dimension;
+  const dvi_status status = dvi_scene_march_state(scene, march, q, p);
+  *seen++ = terms->symmetry_count;
+  for (int i = 0; i < terms->invariant_count && status == DVI_OK; i++) {
+    const dvi_invariant *of = terms->invariants + i;
+    ck_assert_int_eq(of->value(dvi_march_time(march), q, p, seen++, of->user), 0);
+  }
+  free(q);
+  return status;
+}
+
 static dvi_status observe(const dvi_scene *scene, double *seen)
 {
   dvi_march *march = NULL;
   dvi_status status = dvi_scene_march_create(scene, NULL, &march);
   if (status == DVI_OK) status = dvi_march_advance(march, 0.7);
-  for (int i = 0; status == DVI_OK && dvi_march_observable(march, i) != NULL; i++)
-    status = dvi_march_observe(march, i, seen + i);
+  for (int i = 0; status == DVI_OK && dvi_march_observable(march, i) != NULL; i++, seen++)
+    status = dvi_march_observe(march, i, seen);
+  if (status == DVI_OK && dvi_scene_elastic(scene) != NULL) status = probe(scene, march, seen);
   dvi_march_destroy(&march);
   return status;
 }
@@ -51,12 +68,12 @@ static void read_share(const dvi_mesh *share, int rank, void *user)
   dvi_scene_destroy(&scene);
 }
 
-/* Read a scene on all shares of a box of 4*3*2 cells. */
+/* Read a scene on all shares of a box of 4*3*2 cells, or of these cut into tetrahedra. */
 static void read_shares(const char *text, shared_scene *s)
 {
-  enum { CELLS = 24 };
+  enum { CELLS = 144 };
   const dvi_generator_options options = {.cells = {4, 3, 2}};
-  dvi_mesh *mesh = generated("box", options);
+  dvi_mesh *mesh = generated(strstr(text, "kuhn") != NULL ? "kuhn" : "box", options);
   int owner[CELLS];
   for (int c = 0; c < CELLS; c++) owner[c] = c % PROCESSES;
   s->path = path_in_folder("share.yaml");
@@ -71,6 +88,10 @@ static void read_shares(const char *text, shared_scene *s)
 #define WAVE                                                                  \
   "mesh: {generator: box, cells: [4, 3, 2]}\nfield: wave\nmethod: leapfrog\n" \
   "step: {fraction: 0.5}\nuntil: 1\ninitial: {u: x*(1 - y)}\n"
+
+#define SOLID                                                                          \
+  "mesh: {generator: kuhn, cells: [4, 3, 2]}\nfield: elastic\nstep: {fraction: 0.5}\n" \
+  "until: 1\nmethod: verlet\n"
 
 /* All processes observe what one observes on the whole mesh. */
 static void check_observed(const char *text)
@@ -97,6 +118,16 @@ START_TEST(marches_have_the_bits_of_the_whole_mesh)
                          "initial: {E: [y*(1 - y), 0, x]}\n"
                          "sources: {ring: {at: [0.5, 0.5, 0.5], current: [0, 0, sin(9*t)]}}\n"
                          "probes: {e: {of: E, at: [0.3, 0.4, 0.5], along: [1, 0.2, 0]}}\n");
+  check_observed(SOLID "materials: {all: {law: neo-hookean, lambda: 1, mu: 1, alpha: 0.2}}\n"
+                       "boundary: {left: {fixed: \"[0, 0.1*sin(t), 0]\"}, back: {fixed: {z: 0}}}\n"
+                       "loads: {gravity: [0, 0, -0.1], right: {traction: -0.1*normal}}\n"
+                       "initial: {u': \"[0, 0.1*x, 0.05*x*y]\"}\n"
+                       "probes: {tip: {of: x, at: [1, 1, 1]}, inside: {at: [0.5, 0.5, 0.5]}, "
+                       "rate: {of: u', at: [0.25, 0.3, 0.1]}, pull: {of: stress, "
+                       "at: [0.5, 0.5, 0.5]}, mises: {of: von_mises, at: [0.7, 0.1, 0.2]}, "
+                       "part: {of: kinetic, part: all}}\n");
+  check_observed(SOLID "materials: {all: {law: svk, lambda: 1, mu: 1}}\n"
+                       "initial: {u': \"[0.2*y, -0.1*z, 0.15*x*z]\"}\n");
 }
 END_TEST
 
@@ -114,8 +145,12 @@ START_TEST(what_needs_the_whole_mesh_is_refused)
 {
   check_refused(WAVE "boundary: fixed\nprobes: {a: {at: [0.5, 0.5, 0.5]}}\n", DVI_UNSUPPORTED,
                 "probes of a wave need the whole mesh");
-  check_refused("mesh: {generator: box, cells: [4, 3, 2]}\nfield: elastic\nmethod: avi\nuntil: 1\n",
-                DVI_UNSUPPORTED, "no grids of yee, densities and solids");
+  check_refused(SOLID "obstacles: {floor: {plane: {point: [0, 0, -1], normal: [0, 0, 1]}, "
+                      "restitution: 1}}\nmaterials: {all: {law: svk, lambda: 1, mu: 1}}\n",
+                DVI_UNSUPPORTED, "an obstacle needs a whole mesh");
+  check_refused(SOLID "materials: {all: {law: svk, lambda: 1, mu: 1}, stiff: {law: svk, lambda: 9, "
+                      "mu: 9}}\nloads: {gravity: [0, 0, -1]}\n",
+                DVI_BAD_FILE, "no part 'stiff'");
   check_refused("coordinates: {q: scalar}\nlagrangian: q'^2/2\ninitial: {q: 1}\nmethod: verlet\n"
                 "step: 0.1\nuntil: 1\n",
                 DVI_UNSUPPORTED, "this scene has none");

@@ -12,10 +12,13 @@ void run_ranks(const dvi_mesh *whole, int count, const int *owner,
 /* Let each thread work as one of `count` processes that divide a grid of boxes. */
 void run_box_ranks(int count, void (*work)(const dvi_yee_ranks *ranks, void *user), void *user);
 
-/* Ranks that count how often planes go to neighbours, which fails while the line is cut. */
+/* Ranks that count how often planes go to neighbours, which fails while the line is cut, with how
+ * many numbers, and how long that takes. */
 typedef struct watched_ranks {
   const dvi_yee_ranks *ranks;
   int passes, is_cut;
+  int64_t numbers;
+  double seconds;
 } watched_ranks;
 
 /* The watched ones last as long as those that are returned. */

@@ -35,6 +35,7 @@ typedef struct dvi_division_facts {
   int64_t bytes_in[DVI_MESH_DIMENSION_MAX + 1]; /**< that a refresh of a k-form receives */
   int messages_in[DVI_MESH_DIMENSION_MAX + 1];  /**< in as many messages */
   int neighbours;                               /**< processes that own ghosts */
+  int64_t agreements; /**< so far, in which all processes have added or compared numbers */
 } dvi_division_facts;
 
 #ifdef __cplusplus
@@ -58,6 +59,27 @@ extern "C" {
  *  @retval DVI_SOLVER_FAILED PETSc or MPI failed */
 dvi_status dvi_mesh_divide(const dvi_mesh *mesh, const dvi_division_options *options,
                            dvi_mesh **share, dvi_division **division);
+
+/** Find owners of the n-cells of a mesh, among any number of processes. Few may foresee how many
+ *  would share it: the owners are not the ones that dvi_mesh_divide finds on another number of
+ *  processes, and there are as many cells and neighbours.
+ *
+ *  @param mesh  the whole mesh, the same on all processes of the communicator
+ *  @param options  NULL for the defaults
+ *  @param parts  the number of owners, 1 or more
+ *  @param[out] owner  [n-cells] their owners, from 0
+ *  @retval (others)  as dvi_mesh_divide */
+dvi_status dvi_mesh_partition(const dvi_mesh *mesh, const dvi_division_options *options, int parts,
+                              int *owner);
+
+/** Set the values of a form at the cells that others own to those that the owners have, as a step
+ *  does. All processes of the division call it.
+ *
+ *  @param         degree  k
+ *  @param[in,out] values  [k-cells of the share]
+ *  @retval DVI_BAD_ARGUMENT  an argument is missing, or there are no cells of that degree
+ *  @retval DVI_SOLVER_FAILED the processes could not speak with each other */
+dvi_status dvi_division_refresh(dvi_division *division, int degree, double *values);
 
 /** Give facts about the share of this process. */
 void dvi_division_facts_of(const dvi_division *division, dvi_division_facts *facts);

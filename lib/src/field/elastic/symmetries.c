@@ -3,7 +3,9 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "core/status.h"
 #include "field/elastic/system.h"
+#include "field/mesh/share.h"
 
 enum { AXES = DVI_ELASTIC_DIMENSION_MAX };
 
@@ -37,16 +39,17 @@ static int turn(const double *q, double *xi, void *user)
 
 /* ---- what allows them ---- */
 
-/* Tell if no node's component is given, and if none has a load, as far as is known. */
-static int is_untouched(const dvi__solid_system *s, int component)
+/* Count the nodes on all processes whose components are given, or have a load, as far as is known.
+ * Unsteady loads touch all. */
+static dvi_status count_touched(const dvi__solid_system *s, int64_t touched[AXES])
 {
   const dvi_elastic *e = s->elastic;
-  if (e->load_count > 0 && !e->has_steady_loads) return 0;
-  for (int64_t v = 0; v < e->vertices; v++) {
-    const int k = e->unknown[v * e->n + component];
-    if (k < 0 || (s->load != NULL && s->load[k] != 0)) return 0;
+  for (int i = 0; i < AXES; i++) touched[i] = e->load_count > 0 && !e->has_steady_loads;
+  for (int64_t i = 0; i < e->vertices * e->n; i++) {
+    const int k = e->unknown[i], is_loaded = k >= 0 && s->load != NULL && s->load[k] != 0;
+    if (dvi__owns(e->mesh, 0, i / e->n)) touched[i % e->n] += k < 0 || is_loaded;
   }
-  return 1;
+  return dvi__count_all(e->mesh, AXES, touched);
 }
 
 /* Tell if no obstacle is in the way of a translation or of a turn. */
@@ -109,8 +112,12 @@ static void add(dvi__solid_system *s, int axis, int is_turn, const char *name)
                               .is_turn = is_turn,
                               .is_small = dvi__solid_is_linear(s->elastic)};
   (void)snprintf(of->name, sizeof of->name, "%s", name);
-  s->symmetry_term[s->symmetries++] = (dvi_symmetry){
-      .name = of->name, .generator = is_turn ? turn : translate, .user = of};
+  const int has_generator = s->elastic->mesh->share == NULL;
+  s->symmetry_term[s->symmetries++] = (dvi_symmetry){.name = of->name,
+                                                     .generator = !has_generator ? NULL
+                                                                  : is_turn      ? turn
+                                                                                 : translate,
+                                                     .user = of};
 }
 
 int dvi__solid_has_turns(const dvi_elastic *e)
@@ -118,16 +125,18 @@ int dvi__solid_has_turns(const dvi_elastic *e)
   return dvi__solid_is_linear(e) || are_objective(e);
 }
 
-void dvi__solid_find_symmetries(dvi__solid_system *s)
+dvi_status dvi__solid_find_symmetries(dvi__solid_system *s)
 {
   static const char *const momentum[] = {"momentum_x", "momentum_y", "momentum_z"},
                            *const angular[] = {"angular_x", "angular_y", "angular_z"};
   const dvi_elastic *e = s->elastic;
   const int turns = dvi__solid_has_turns(e);
+  int64_t touched[AXES];
+  DVI_TRY(count_touched(s, touched));
   for (int i = 0; i < e->n && i < AXES; i++)
-    if (is_untouched(s, i) && passes_obstacles(e, i, 0)) add(s, i, 0, momentum[i]);
+    if (touched[i] == 0 && passes_obstacles(e, i, 0)) add(s, i, 0, momentum[i]);
   for (int i = e->n == 3 ? 0 : 2; i < AXES && turns; i++)
-    if (is_untouched(s, (i + 1) % AXES) && is_untouched(s, (i + 2) % AXES) &&
-        passes_obstacles(e, i, 1))
+    if (touched[(i + 1) % AXES] == 0 && touched[(i + 2) % AXES] == 0 && passes_obstacles(e, i, 1))
       add(s, i, 1, e->n == 3 ? angular[i] : "angular");
+  return DVI_OK;
 }

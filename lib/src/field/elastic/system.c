@@ -70,7 +70,7 @@ static dvi_status make(dvi__solid_system *s)
   DVI_TRY(dvi__solid_make_load(s));
   DVI_TRY(dvi__solid_make_damping(s));
   DVI_TRY(dvi__solid_make_contacts(s));
-  dvi__solid_find_symmetries(s);
+  DVI_TRY(dvi__solid_find_symmetries(s));
   int potentials = add_stored(s);
   if (e->load_count > 0) s->potential[potentials++] = dvi__solid_load_potential(s);
   s->terms = (dvi_system_terms){.dimension = (int)e->unknowns,
@@ -87,18 +87,33 @@ static dvi_status make(dvi__solid_system *s)
   return DVI_OK;
 }
 
+/* A share tells what the whole solid keeps. */
+static dvi_status make_of_share(dvi__solid_system *s)
+{
+  DVI_TRY(dvi__agree(s->elastic->mesh, dvi__solid_make_load(s)));
+  DVI_TRY(dvi__solid_find_symmetries(s));
+  s->terms = (dvi_system_terms){.dimension = (int)s->elastic->unknowns,
+                                .symmetries = s->symmetries > 0 ? s->symmetry_term : NULL,
+                                .symmetry_count = s->symmetries};
+  return DVI_OK;
+}
+
 /* ---- the system ---- */
 
 dvi_status dvi_elastic_system_terms(dvi_elastic *elastic, dvi_system_terms *terms)
 {
   if (elastic == NULL || terms == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "elastic: a solid and a place for terms are needed");
-  DVI_TRY(dvi__refuse_share(elastic->mesh, "elastic: the mechanical system of a solid"));
   if (elastic->system == NULL) {
     elastic->system = DVI_NEW(dvi__solid_system, 1);
-    if (elastic->system == NULL) return dvi__fail(DVI_NO_MEMORY, "elastic: no memory for a system");
-    elastic->system->elastic = elastic;
-    const dvi_status status = make(elastic->system);
+    dvi_status status = elastic->system != NULL
+                            ? DVI_OK
+                            : dvi__fail(DVI_NO_MEMORY, "elastic: no memory for a system");
+    status = dvi__agree(elastic->mesh, status);
+    if (status == DVI_OK && elastic->system != NULL) {
+      elastic->system->elastic = elastic;
+      status = (elastic->mesh->share != NULL ? make_of_share : make)(elastic->system);
+    }
     if (status != DVI_OK) {
       dvi__solid_system_destroy(&elastic->system);
       return status;
@@ -114,6 +129,8 @@ dvi_status dvi_elastic_system(dvi_elastic *elastic, dvi_system **system)
   if (system == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "elastic: a place for the system is needed");
   *system = NULL;
+  if (elastic != NULL)
+    DVI_TRY(dvi__refuse_share(elastic->mesh, "elastic: the mechanical system of a solid"));
   DVI_TRY(dvi_elastic_system_terms(elastic, &terms));
   return dvi_system_create(&terms, system);
 }

@@ -62,7 +62,7 @@ void dvi__solid_system_destroy(dvi__solid_system **system);
 
 /* Make Rayleigh's damping, the symmetries and the contacts. */
 dvi_status dvi__solid_make_damping(dvi__solid_system *s);
-void dvi__solid_find_symmetries(dvi__solid_system *s);
+dvi_status dvi__solid_find_symmetries(dvi__solid_system *s);
 dvi_status dvi__solid_make_contacts(dvi__solid_system *s);
 
 /* Keep the bound of the frequencies at rest, by the stiffness and the masses of the unknowns. */

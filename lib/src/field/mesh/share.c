@@ -105,6 +105,22 @@ dvi_status dvi__sum_of_all(const dvi_mesh *mesh, dvi__accumulator *sum, double *
   return DVI_OK;
 }
 
+/* The owner of the first cell has it before all others there, and another process may have a later
+ * one where cells meet without common vertices. */
+dvi_status dvi__locate_first(const dvi_mesh *mesh, const double *at, double *place, int64_t *number)
+{
+  int cell = -1;
+  const dvi_status status = dvi_mesh_locate(mesh, 1, at, &cell, place);
+  const int64_t total = dvi__whole_count(mesh, mesh->n);
+  double behind = cell >= 0 && dvi__owns(mesh, mesh->n, cell)
+                      ? (double)(total - dvi__whole_number(mesh, mesh->n, cell))
+                      : 0; /* the more the earlier the cell comes */
+  DVI_TRY(dvi__agree(mesh, status));
+  DVI_TRY(dvi__largest_of_all(mesh, 1, &behind));
+  *number = behind > 0 ? total - (int64_t)behind : -1;
+  return DVI_OK;
+}
+
 dvi_status dvi__rows_sum(const void *mesh, dvi__accumulator *sum, double *value)
 {
   return dvi__sum_of_all(mesh, sum, value);

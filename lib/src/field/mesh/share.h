@@ -68,6 +68,11 @@ dvi_status dvi__sum_of_all(const dvi_mesh *mesh, dvi__accumulator *sum, double *
 dvi_status dvi__count_all(const dvi_mesh *mesh, int count, int64_t *number);
 dvi_status dvi__largest_of_all(const dvi_mesh *mesh, int count, double *number);
 
+/* Find the first n-cell of the whole mesh at a point, and the place in it, as dvi_mesh_locate does.
+ * The number is that in the whole mesh, or -1. A process that has not the cell has no place. */
+dvi_status dvi__locate_first(const dvi_mesh *mesh, const double *at, double *place,
+                             int64_t *number);
+
 /* dvi__sum_of_all, dvi__largest_of_all of one number, and dvi__agree, for callers that do not know
  * meshes. */
 dvi_status dvi__rows_sum(const void *mesh, dvi__accumulator *sum, double *value);

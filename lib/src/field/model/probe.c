@@ -35,30 +35,12 @@ dvi_status dvi__functional_make(const dvi_mesh *mesh, int k, int64_t cell, const
   return DVI_OK;
 }
 
-/* Find the first n-cell of the whole mesh at a point. Its owner has it before all others there, and
- * another process may have a later one where cells meet without common vertices. The number is that
- * in the whole mesh, or -1. */
-static dvi_status find_first_cell(const dvi_mesh *mesh, const double *at, double *place,
-                                  int64_t *number)
-{
-  int cell = -1;
-  const dvi_status status = dvi_mesh_locate(mesh, 1, at, &cell, place);
-  const int64_t total = dvi__whole_count(mesh, mesh->n);
-  double behind = cell >= 0 && dvi__owns(mesh, mesh->n, cell)
-                      ? (double)(total - dvi__whole_number(mesh, mesh->n, cell))
-                      : 0; /* the more the earlier the cell comes */
-  DVI_TRY(dvi__agree(mesh, status));
-  DVI_TRY(dvi__largest_of_all(mesh, 1, &behind));
-  *number = behind > 0 ? total - (int64_t)behind : -1;
-  return DVI_OK;
-}
-
 dvi_status dvi__functional_at(const dvi_mesh *mesh, int k, const double *at, const double *along,
                               dvi__functional *functional)
 {
   double place[DVI__CORNERS];
   int64_t number;
-  DVI_TRY(find_first_cell(mesh, at, place, &number));
+  DVI_TRY(dvi__locate_first(mesh, at, place, &number));
   if (number < 0)
     return dvi__fail(DVI_BAD_ARGUMENT, "field: the point (%g, %g, %g) lies outside of the mesh",
                      at[0], mesh->n > 1 ? at[1] : 0.0, mesh->n > 2 ? at[2] : 0.0);

@@ -90,8 +90,9 @@ static int reach_to_ghosts(const dvi__yee *y, const dvi_yee_ranks *r)
   const dvi__yee_axis *a = &y->axis[y->divided];
   for (int rank = 1; rank < r->count; rank++)
     for (int e = 0; e < 2; e++) {
-      const int first = first_box(a->cells, rank, r->count), begin = a->layers[e].first;
-      if (begin < first + y->together && begin + a->layers[e].count > first - y->together) return 1;
+      const dvi__yee_layers *l = &a->layers[e];
+      const int first = first_box(a->cells, rank, r->count), last = l->first + l->count - 1;
+      if (l->count > 0 && l->first < first + y->together && last >= first - y->together) return 1;
     }
   return 0;
 }

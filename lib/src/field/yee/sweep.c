@@ -184,14 +184,14 @@ static int most_together(const dvi__yee *y, int processes)
 }
 
 /* Choose how many steps go together if nothing is asked for: one where all of a process fits into
- * a cache. A process that takes s together updates about s planes of others in a step, and goes
- * through its own ones in memory 1/s times, which the square root of half of these balances. */
+ * a cache. A process that takes s together updates up to s planes of others in a step, and goes
+ * through its own ones in memory 1/s times. The square root of a quarter of these balances it. */
 static int default_together(const dvi__yee *y, int processes, size_t bytes)
 {
   const int planes = y->axis[y->axes - 1].cells / processes;
   int steps = DEFAULT_TOGETHER;
   if (bytes <= CACHE) return 1;
-  while (processes > 1 && steps > 1 && 2 * steps * steps > planes) steps--;
+  while (processes > 1 && steps > 1 && 4 * steps * steps > planes) steps--;
   return steps;
 }
 

@@ -108,28 +108,34 @@ static bool refuse_load(dvi_scene *scene, const dvi__tree *key)
                            dvi__nearest(key->text, 1, &gravity, hint, sizeof hint));
 }
 
+/* Return the degree of a part's largest cells, of which a share may have none, or -1. */
+static int degree_of_part(const dvi_mesh *mesh, const char *part)
+{
+  const char *name;
+  for (int i = 0; (name = dvi_mesh_part_name(mesh, i)) != NULL; i++)
+    if (strcmp(name, part) == 0) return dvi_mesh_part_degree(mesh, i);
+  return -1;
+}
+
 static bool read_load(dvi_scene *scene, const dvi__tree *key, const dvi__tree *tree)
 {
   static const char *const known[] = {"force", "traction"};
   struct dvi__scene_elastic *s = scene->field->elastic;
   dvi__solid_function *function;
-  int64_t cells, count;
   if (tree->kind == DVI__MAPPING && !dvi__want_keys(scene, tree, "a load", 2, known)) return false;
   if (tree->kind != DVI__MAPPING || tree->count != 1) return refuse_load(scene, key);
   const bool is_traction = strcmp(tree->key[0]->text, "traction") == 0;
-  const int degree = scene->field->dimension - is_traction;
-  (void)dvi_mesh_part_cells(scene->field->mesh, key->text, scene->field->dimension, &cells);
-  (void)dvi_mesh_part_cells(scene->field->mesh, key->text, degree, &count);
-  if (is_traction && (count <= 0 || cells > 0))
+  const int degree = degree_of_part(scene->field->mesh, key->text), n = scene->field->dimension;
+  if (is_traction && degree != n - 1)
     return dvi__scene_refuse(
         scene, key->span, "the mesh has no part '%s' of facets for a traction; 'boundary' is one",
         key->text);
-  if (count == 0)
+  if (!is_traction && degree >= 0 && degree < n)
     return dvi__scene_refuse(scene, key->span,
                              "the part '%s' has no volume for a force; a part of the boundary has "
                              "a 'traction', a force per area",
                              key->text);
-  if (count < 0) return dvi__refuse_part(scene, key->span, key->text, true);
+  if (degree < 0) return dvi__refuse_part(scene, key->span, key->text, true);
   if (!dvi__solid_function_read(
           scene, tree->child[0], DVI__SOLID_TIME | (is_traction ? DVI__SOLID_NORMAL : 0),
           scene->field->space, is_traction ? "a traction" : "a force", &function))
@@ -195,13 +201,17 @@ bool dvi__solid_add_gravity(dvi_scene *scene)
   const dvi_mesh *mesh = scene->field->mesh;
   const int n = scene->field->dimension;
   if (s->gravity == NULL) return true;
+  if (s->materials > 1 && dvi__is_share(scene))
+    return dvi__complain(scene->complaint, DVI_UNSUPPORTED, s->gravity->span,
+                         "gravity on several materials needs the whole mesh, and this is the share "
+                         "of one of several processes: give each part its force per volume");
   double *rho = dvi__arena_take(&scene->arena, (size_t)dvi_mesh_count(mesh, n), sizeof *rho);
   if (rho == NULL) return dvi__scene_no_memory(scene);
   for (int i = 0; i < s->materials; i++) {
     int64_t count;
     const dvi_elastic_material *m = s->material + i;
     const int *cell = dvi_mesh_part_cells(mesh, m->part, n, &count);
-    const double before = rho[cell[0]];
+    const double before = count > 0 ? rho[cell[0]] : 0;
     for (int64_t k = 0; k < count; k++) {
       if (rho[cell[k]] != before)
         return dvi__scene_refuse(scene, s->material_span[i],

@@ -127,10 +127,8 @@ static bool read_material(dvi_scene *scene, const char *part, dvi__span span, co
                                       "mooney", "rho",    "alpha", "beta"};
   struct dvi__scene_elastic *s = scene->field->elastic;
   dvi_elastic_material *m = s->material + s->materials;
-  int64_t count;
-  const dvi_mesh *mesh = scene->field->mesh;
-  (void)dvi_mesh_part_cells(mesh, part, scene->field->dimension, &count);
-  if (count <= 0) return dvi__refuse_part(scene, span, part, true);
+  if (!dvi__has_part_of_cells(scene->field->mesh, part))
+    return dvi__refuse_part(scene, span, part, true);
   if (!dvi__want_mapping(scene, tree, "a material") ||
       !dvi__want_keys(scene, tree, "a material", 9, known))
     return false;

@@ -90,14 +90,13 @@ static bool read_part(dvi_scene *scene, const dvi__tree *tree, dvi__solid_probe 
 {
   static const char *const known[] = {"of", "part"};
   const dvi__tree *part = dvi__tree_find(tree, "part");
-  int64_t count;
   if (!dvi__want_keys(scene, tree, "a probe of an energy", 2, known) ||
       (part != NULL && !dvi__want_text(scene, part, "a part of the mesh")))
     return false;
   if (part != NULL) {
     probe->part = part->text;
-    (void)dvi_mesh_part_cells(scene->field->mesh, part->text, scene->field->dimension, &count);
-    if (count <= 0) return dvi__refuse_part(scene, part->span, part->text, true);
+    if (!dvi__has_part_of_cells(scene->field->mesh, part->text))
+      return dvi__refuse_part(scene, part->span, part->text, true);
   }
   return add_named(scene, probe, "");
 }
@@ -200,21 +199,33 @@ static dvi_status energy_of(const dvi__solid_probe *probe, double t, const motio
   return DVI_OK;
 }
 
+/* Give the value at a point where its cell is owned, and 0 on the other processes. */
+static dvi_status value_here(const dvi__solid_probe *probe, const motion *m, double *value)
+{
+  *value = 0;
+  if (probe->cell < 0) return DVI_OK;
+  switch (probe->of) {
+  case DVI__SOLID_DISPLACEMENT: *value = at_point(probe, m->u, NULL); break;
+  case DVI__SOLID_VELOCITY: *value = at_point(probe, m->rate, NULL); break;
+  case DVI__SOLID_POSITION:
+    *value = at_point(probe, dvi_mesh_points(dvi_elastic_mesh(probe->solid)), m->u);
+    break;
+  default: return stress_at(probe, m->u, value);
+  }
+  return DVI_OK;
+}
+
 /* `user` is a probe. */
 static int watch(double t, const double *q, const double *p, double *value, void *user)
 {
   const dvi__solid_probe *probe = user;
-  const dvi_mesh *mesh = dvi_elastic_mesh(probe->solid);
+  const bool is_at_point = probe->of < DVI__SOLID_TOTAL;
   motion m = {.u = NULL};
   dvi_status status = find_motion(probe->solid, t, q, p, &m);
-  if (status == DVI_OK) switch (probe->of) {
-    case DVI__SOLID_DISPLACEMENT: *value = at_point(probe, m.u, NULL); break;
-    case DVI__SOLID_VELOCITY: *value = at_point(probe, m.rate, NULL); break;
-    case DVI__SOLID_POSITION: *value = at_point(probe, dvi_mesh_points(mesh), m.u); break;
-    case DVI__SOLID_STRESS:
-    case DVI__SOLID_MISES: status = stress_at(probe, m.u, value); break;
-    default: status = energy_of(probe, t, &m, value); break;
-    }
+  if (status == DVI_OK && is_at_point) status = value_here(probe, &m, value);
+  status = dvi_elastic_agree(probe->solid, status);
+  if (status == DVI_OK)
+    status = is_at_point ? dvi_elastic_sum(probe->solid, 1, value) : energy_of(probe, t, &m, value);
   dvi__heap_free(m.u);
   return status == DVI_OK ? 0 : status == DVI_SINGULAR ? 1 : -1;
 }
@@ -223,15 +234,15 @@ static int watch(double t, const double *q, const double *p, double *value, void
 
 static bool place_probe(dvi_scene *scene, dvi__solid_probe *probe)
 {
-  const dvi_mesh *mesh = scene->field->mesh;
   probe->solid = scene->field->elastic->solid;
   if (probe->of >= DVI__SOLID_TOTAL) return true;
-  const dvi_status status = dvi_mesh_locate(mesh, 1, probe->at, &probe->cell, probe->weight);
-  if (status != DVI_OK)
-    return dvi__complain(scene->complaint, status, probe->place, "%s", dvi_last_error());
-  return probe->cell >= 0 ||
-         dvi__scene_refuse(scene, probe->place, "the probe '%s' is outside of the mesh",
-                           probe->name);
+  const dvi_status status = dvi_elastic_locate(probe->solid, probe->at, &probe->cell,
+                                               probe->weight);
+  if (status == DVI_BAD_ARGUMENT)
+    return dvi__scene_refuse(scene, probe->place, "the probe '%s' is outside of the mesh",
+                             probe->name);
+  return status == DVI_OK ||
+         dvi__complain(scene->complaint, status, probe->place, "%s", dvi_last_error());
 }
 
 bool dvi__solid_place_probes(dvi_scene *scene)

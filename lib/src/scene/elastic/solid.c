@@ -137,6 +137,15 @@ static bool make_start(dvi_scene *scene)
   return true;
 }
 
+/* Let all processes fail if the start fails on one of them. */
+static bool make_all_starts(dvi_scene *scene, const dvi__tree *section)
+{
+  const dvi_elastic *solid = scene->field->elastic->solid;
+  const bool is_made = make_start(scene);
+  const dvi_status status = dvi_elastic_agree(solid, is_made ? DVI_OK : DVI_BAD_FILE);
+  return is_made && (status == DVI_OK || refuse(scene, section->span, status));
+}
+
 /* A cell may be inverted where its law is not defined. */
 static bool check_start(dvi_scene *scene, const dvi__tree *section)
 {
@@ -210,7 +219,7 @@ bool dvi__elastic_make(dvi_scene *scene, const dvi__tree *section)
   if (status != DVI_OK) return complain(scene, section, status);
   scene->form = "separable";
   scene->mass = "diagonal";
-  return dvi__declare_unknowns(scene, section, "u") && make_start(scene) &&
+  return dvi__declare_unknowns(scene, section, "u") && make_all_starts(scene, section) &&
          check_start(scene, section) && dvi__solid_place_probes(scene) &&
          dvi__choose_field_columns(scene);
 }
@@ -258,10 +267,10 @@ dvi_status dvi__elastic_march(const dvi_scene *scene, const dvi_march_options *o
   const size_t numbers = (size_t)dvi_mesh_count(scene->field->mesh, 0) *
                          (size_t)scene->field->space;
   double *E = dvi__heap_take(numbers, sizeof *E);
-  if (E == NULL) return DVI_NO_MEMORY;
-  for (size_t i = 0; i < numbers; i++) E[i] = -s->velocity[i];
+  for (size_t i = 0; i < numbers && E != NULL; i++) E[i] = -s->velocity[i];
   const dvi_march_state state = {.size = sizeof state, .A = s->u, .E = E};
-  dvi_status status = dvi_elastic_march_create(s->solid, options, march);
+  dvi_status status = dvi_elastic_agree(s->solid, E != NULL ? DVI_OK : DVI_NO_MEMORY);
+  if (status == DVI_OK) status = dvi_elastic_march_create(s->solid, options, march);
   if (status == DVI_OK) status = dvi_march_start(*march, &state);
   if (status != DVI_OK) dvi_march_destroy(march);
   dvi__heap_free(E);
@@ -271,14 +280,19 @@ dvi_status dvi__elastic_march(const dvi_scene *scene, const dvi_march_options *o
 dvi_status dvi__elastic_march_state(const dvi_scene *scene, const dvi_march *march, double *q,
                                     double *p)
 {
+  const dvi_elastic *solid = scene->field->elastic->solid;
   const int64_t numbers = dvi_march_size(march, DVI_FORM_A);
   double *u = dvi__heap_take(2 * (size_t)numbers, sizeof *u);
-  if (u == NULL) return DVI_NO_MEMORY;
+  dvi_status status = dvi_elastic_agree(solid, u != NULL ? DVI_OK : DVI_NO_MEMORY);
+  if (status != DVI_OK || u == NULL) {
+    dvi__heap_free(u);
+    return status;
+  }
   double *const rate = u + numbers;
-  dvi_status status = dvi_march_sample(march, DVI_FORM_A, 0, NULL, u);
+  status = dvi_march_sample(march, DVI_FORM_A, 0, NULL, u);
   if (status == DVI_OK && p != NULL) status = dvi_march_sample(march, DVI_FORM_E, 0, NULL, rate);
   for (int64_t i = 0; i < numbers; i++) rate[i] = -rate[i];
-  if (status == DVI_OK) dvi_elastic_project(scene->field->elastic->solid, u, rate, q, NULL, p);
+  if (status == DVI_OK) dvi_elastic_project(solid, u, rate, q, NULL, p);
   dvi__heap_free(u);
   return status;
 }

@@ -145,10 +145,10 @@ static bool take_share(dvi_scene *scene, const dvi__tree *section)
   struct dvi__scene_field *f = scene->field;
   dvi_mesh *share = NULL;
   if (scene->division == NULL) return true;
-  if (f->mesh == NULL || dvi__has_density(scene) || dvi__is_elastic(scene))
+  if (f->mesh == NULL || dvi__has_density(scene))
     return dvi__complain(scene->complaint, DVI_UNSUPPORTED, section->span,
-                         "several processes share fields of waves and Maxwell's on meshes, and no "
-                         "grids of yee, densities and solids");
+                         "several processes share fields of waves, Maxwell's and solids on meshes, "
+                         "and no grids of yee and densities");
   if (!report(scene, section, scene->division->divide(f->mesh, &share, scene->division->user)))
     return false;
   dvi_mesh_destroy(&f->mesh);

@@ -1,0 +1,195 @@
+#include "scaling/cuts.h"
+
+#include <dvi/maxwell.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include "cli/command.h"
+#include "load/field.h"
+#include "module/ranks.h"
+
+enum { TRIES = 8 /* parts with the largest surface that are cut out of all */ };
+
+/* ---- a process that stands for one of many, and hears nothing of the others ---- */
+
+static int no_refresh(int degree, double *values, void *user)
+{
+  (void)degree;
+  (void)values;
+  (void)user;
+  return 0;
+}
+
+static int own_sum(int count, int64_t *number, void *user)
+{
+  (void)count;
+  (void)number;
+  (void)user;
+  return 0;
+}
+
+static int own_largest(int count, double *number, void *user)
+{
+  (void)count;
+  (void)number;
+  (void)user;
+  return 0;
+}
+
+static dvi_ranks stand_in(int rank, int parts)
+{
+  return (dvi_ranks){.size = sizeof(dvi_ranks),
+                     .rank = rank,
+                     .count = parts,
+                     .refresh = no_refresh,
+                     .sum = own_sum,
+                     .largest = own_largest};
+}
+
+/* ---- the largest part ---- */
+
+/* Count the facets of each part that another one has, too. */
+static dvi_status count_surfaces(const dvi_mesh *mesh, const int *owner, int64_t *surface)
+{
+  const int n = dvi_mesh_dimension(mesh);
+  dvi_matrix d;
+  const dvi_status status = dvi_mesh_incidence(mesh, n - 1, &d);
+  int *first = status == DVI_OK ? malloc((size_t)d.columns * sizeof *first) : NULL;
+  if (first == NULL) return status != DVI_OK ? status : DVI_NO_MEMORY;
+  for (int64_t f = 0; f < d.columns; f++) first[f] = -1;
+  for (int64_t i = 0; i < d.rows * d.width; i++) {
+    const int own = owner[i / d.width];
+    int *other = first + d.column[i];
+    if (*other >= 0 && *other != own) {
+      surface[own]++;
+      surface[*other]++;
+    }
+    *other = own;
+  }
+  free(first);
+  return DVI_OK;
+}
+
+static int take_largest(int parts, int64_t *surface)
+{
+  int largest = 0;
+  for (int p = 1; p < parts; p++)
+    if (surface[p] > surface[largest]) largest = p;
+  surface[largest] = -1;
+  return largest;
+}
+
+/* Count what a share receives in a refresh of a form of degree k. Owners are fewer than parts. */
+static bool measure_share(const dvi_mesh *share, int k, int rank, int parts, mesh_cut *cut)
+{
+  const int *owner = dvi_mesh_share_owners(share, k);
+  char *sends = calloc((size_t)parts, 1);
+  double bytes = 0, messages = 0;
+  if (sends == NULL) return false;
+  for (int64_t c = 0; c < dvi_mesh_count(share, k); c++) {
+    if (owner[c] == rank) continue;
+    bytes += sizeof(double);
+    messages += !sends[owner[c]];
+    sends[owner[c]] = 1;
+  }
+  free(sends);
+  cut->share = fmax(cut->share, (double)dvi_mesh_count(share, dvi_mesh_dimension(share)));
+  cut->bytes = fmax(cut->bytes, bytes);
+  cut->messages = fmax(cut->messages, messages);
+  return true;
+}
+
+/* Cut out the parts with the largest surface, find the most that one of them has, and keep the
+ * largest share. */
+static dvi_status cut_largest(const dvi_mesh *mesh, int degree, const int *owner, int64_t *surface,
+                              mesh_cut *cut, dvi_mesh **largest)
+{
+  const int parts = (int)cut->parts;
+  dvi_status status = count_surfaces(mesh, owner, surface);
+  for (int i = 0; i < parts && i < TRIES && status == DVI_OK; i++) {
+    const dvi_ranks ranks = stand_in(take_largest(parts, surface), parts);
+    const double before = cut->share;
+    dvi_mesh *share = NULL;
+    status = dvi_mesh_cut(mesh, owner, &ranks, &share);
+    if (status == DVI_OK && !measure_share(share, degree, ranks.rank, parts, cut))
+      status = DVI_NO_MEMORY;
+    if (cut->share > before) {
+      dvi_mesh *smaller = *largest;
+      *largest = share;
+      share = smaller;
+    }
+    dvi_mesh_destroy(&share);
+  }
+  return status;
+}
+
+/* ---- a march ---- */
+
+/* Make a field without losses and sources, and start it. On a share ghosts get no values, which
+ * leaves a smaller field with the bounds of the whole one: a tenth of the bound is stable, and a
+ * step of any length takes as long. */
+static dvi_status make_march(const dvi_star *star, int degree, dvi_field **field, dvi_march **march)
+{
+  const dvi_wave_terms wave = {.size = sizeof wave, .star = star};
+  const dvi_maxwell_terms maxwell = {.size = sizeof maxwell, .star = star};
+  const dvi_march_options options = {.size = sizeof options, .fraction = 0.1};
+  const dvi_march_state start = {.size = sizeof start};
+  dvi_status status = degree == 0 ? dvi_wave_create(&wave, field)
+                                  : dvi_maxwell_create(&maxwell, field);
+  if (status == DVI_OK) status = dvi_march_create(*field, &options, march);
+  if (status == DVI_OK) status = dvi_march_start(*march, &start);
+  return status;
+}
+
+static int time_march(const timed_request *request, const dvi_mesh *mesh, int degree,
+                      dvi_study_spread *seconds)
+{
+  dvi_star *star = NULL;
+  dvi_field *field = NULL;
+  timed_march timed = {.march = NULL};
+  dvi_march_facts facts;
+  dvi_status status = dvi_star_create(mesh, NULL, &star);
+  if (status == DVI_OK) status = make_march(star, degree, &field, &timed.march);
+  int code = status == DVI_OK ? DONE : library_error(status);
+  if (code == DONE) {
+    dvi_march_facts_of(timed.march, &facts);
+    timed.h = facts.step;
+    code = timed_steps(request, &timed, 1, seconds);
+  }
+  timed_close(&timed);
+  dvi_field_destroy(&field);
+  dvi_star_destroy(&star);
+  return code;
+}
+
+/* ---- cuts ---- */
+
+static int cut_and_time(const timed_request *request, const dvi_mesh *mesh, int degree, int *owner,
+                        int64_t *surface, cut_run *run)
+{
+  dvi_mesh *share = NULL;
+  dvi_status status = ranks_partition(mesh, (int)run->cut.parts, owner);
+  if (status == DVI_OK) status = cut_largest(mesh, degree, owner, surface, &run->cut, &share);
+  const int code = status == DVI_OK ? time_march(request, share, degree, &run->seconds)
+                                    : library_error(status);
+  dvi_mesh_destroy(&share);
+  return code;
+}
+
+int cut_run_measure(const timed_request *request, const timed_march *whole, int parts, cut_run *run)
+{
+  const dvi_field *field = dvi_scene_field(whole->scene->scene);
+  const dvi_mesh *mesh = field_mesh(field);
+  const int degree = dvi_field_degree(field);
+  const int64_t cells = dvi_mesh_count(mesh, dvi_mesh_dimension(mesh));
+  *run = (cut_run){.cut = {.parts = parts, .share = parts > 1 ? 0 : (double)cells}};
+  if (parts == 1) return time_march(request, mesh, degree, &run->seconds);
+  int *owner = malloc((size_t)cells * sizeof *owner);
+  int64_t *surface = calloc((size_t)parts, sizeof *surface);
+  const int code = owner != NULL && surface != NULL
+                       ? cut_and_time(request, mesh, degree, owner, surface, run)
+                       : library_error(DVI_NO_MEMORY);
+  free(owner);
+  free(surface);
+  return code;
+}

@@ -1,0 +1,361 @@
+#define _XOPEN_SOURCE 700
+#include "scaling/ranks_bench.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "bench/machine.h"
+#include "cli/command.h"
+#include "load/field.h"
+#include "module/ranks.h"
+#include "scaling/cores.h"
+#include "scaling/ranks_report.h"
+#include "scaling/triad.h"
+#include "study/clock.h"
+
+enum {
+  PARTS_MAX = 128,   /* of a cut */
+  FINER = 8,         /* parts of the next one for each */
+  CELLS_LEAST = 100, /* of a part */
+  STARTED_MOST = 4,  /* processes that are started without mpirun */
+  REFRESHES = 100,   /* that are timed at once */
+  MESSAGES = 1000,   /* small ones that are timed at once */
+  SMALL = 8,         /* bytes of a message */
+  LARGE = 1 << 20,
+  FIRST_WORDS = 5, /* of a command line of mpirun */
+  TEXT_SIZE = 256,
+  NUMBER_TEXT = 32
+};
+
+/* ---- the start ---- */
+
+static int choose_processes(const rank_counts *asked)
+{
+  const int most = cores_count() < STARTED_MOST ? cores_count() : STARTED_MOST;
+  int processes = 2;
+  for (int i = 0; i < asked->count; i++)
+    if (asked->number[i] <= most) processes = (int)fmax(processes, asked->number[i]);
+  return processes;
+}
+
+int ranks_bench_start(const ranks_request *request, int argc, char **argv)
+{
+  rank_counts asked;
+  char count[NUMBER_TEXT], self[] = "dvi", *path = NULL;
+  int code = rank_counts_read(request->scaled, &asked);
+  if (code == DONE) code = ranks_check_module();
+  if (code != DONE) return code;
+  char **word = calloc((size_t)argc + FIRST_WORDS + 1, sizeof *word);
+  if (word == NULL) return library_error(DVI_NO_MEMORY);
+  path = realpath("/proc/self/exe", NULL);
+  (void)snprintf(count, sizeof count, "%d", choose_processes(&asked));
+  char *const first[FIRST_WORDS] = {"mpirun", "-np", count, path != NULL ? path : self, "bench"};
+  memcpy(word, first, sizeof first);
+  memcpy(word + FIRST_WORDS, argv, (size_t)argc * sizeof *argv);
+  (void)fflush(stdout);
+  (void)execvp("mpirun", word);
+  complain("bench: cannot start processes by mpirun: %s; measurements of ranks need MPI",
+           strerror(errno));
+  free(word);
+  free(path);
+  return FAILED;
+}
+
+/* ---- one process alone ---- */
+
+/* Count what a step without losses moves if each number comes from memory once: of the (k+1)-cells
+ * the numbers of their facets in both directions, weights and H, and E of the k-cells. */
+static int count_work(const timed_march *timed, whole_run *whole)
+{
+  const dvi_field *field = dvi_scene_field(timed->scene->scene);
+  const dvi_mesh *mesh = field_mesh(field);
+  const int k = dvi_field_degree(field), n = dvi_mesh_dimension(mesh);
+  dvi_matrix d;
+  const dvi_status status = dvi_mesh_incidence(mesh, k, &d);
+  if (status != DVI_OK) return library_error(status);
+  const double faces = (double)d.rows, edges = (double)d.columns, width = d.width;
+  *whole = (whole_run){.dimension = n,
+                       .degree = k,
+                       .cells = (double)dvi_mesh_count(mesh, n),
+                       .bytes = faces * (8 * width + 32) + 36 * edges,
+                       .flops = faces * (3 * width + 2) + 2 * edges,
+                       .state_bytes = 8 * (faces + edges)};
+  for (int i = 0; i <= n; i++)
+    whole->numbered = fmax(whole->numbered, (double)dvi_mesh_count(mesh, i));
+  return DONE;
+}
+
+static int measure_cuts(ranks_bench *b, const timed_march *timed)
+{
+  int code = cut_run_measure(&b->request->timed, timed, 1, b->cut);
+  b->cuts = 1;
+  for (int parts = 2; parts <= PARTS_MAX && parts * CELLS_LEAST <= b->whole.cells && code == DONE;
+       parts *= FINER)
+    code = cut_run_measure(&b->request->timed, timed, parts, b->cut + b->cuts++);
+  return code;
+}
+
+static int measure_alone(ranks_bench *b)
+{
+  timed_march timed;
+  int code = timed_open(&b->request->timed, NULL, &timed);
+  if (code == DONE) code = count_work(&timed, &b->whole);
+  if (code == DONE) code = timed_steps(&b->request->timed, &timed, 1, &b->whole.seconds);
+  if (code == DONE) code = measure_cuts(b, &timed);
+  timed_close(&timed);
+  return code;
+}
+
+/* ---- processes that share ---- */
+
+static int measure_refresh(const timed_march *timed, shared_run *run, long rounds)
+{
+  const dvi_field *field = dvi_scene_field(timed->scene->scene);
+  const int k = dvi_field_degree(field);
+  double sample[DVI_STUDY_ROUNDS_MAX], ready;
+  double *values = calloc((size_t)dvi_mesh_count(field_mesh(field), k), sizeof *values);
+  dvi_status status = values != NULL ? DVI_OK : DVI_NO_MEMORY;
+  bool good = true;
+  for (long round = 0; round < rounds && status == DVI_OK && good; round++) {
+    good = slowest_of(run->ranks, 0, &ready);
+    const double began = elapsed_now();
+    for (int i = 0; i < REFRESHES && status == DVI_OK; i++) status = ranks_refresh(k, values);
+    good = slowest_of(run->ranks, (elapsed_now() - began) / REFRESHES, sample + round) && good;
+  }
+  free(values);
+  if (status != DVI_OK) return library_error(status);
+  run->exchange = dvi_study_spread_of((int)rounds, sample).least;
+  return good ? DONE : FAILED;
+}
+
+/* Give what the ranks have most. */
+static void find_cut(const timed_march *timed, shared_run *run)
+{
+  run->cut = (mesh_cut){.parts = run->ranks};
+  run->cells = 0;
+  for (int r = 0; r < run->ranks; r++) {
+    mesh_division share;
+    ranks_tell(r, dvi_field_degree(dvi_scene_field(timed->scene->scene)), &share);
+    run->cells += (double)share.owned;
+    run->cut.share = fmax(run->cut.share, (double)(share.owned + share.ghosts));
+    run->cut.bytes = fmax(run->cut.bytes, (double)share.bytes_in);
+    run->cut.messages = fmax(run->cut.messages, share.messages_in);
+  }
+}
+
+/* Find the value of the parameter for one rank, in the settings or the scene. */
+static int find_base(ranks_bench *b, const problem *scene)
+{
+  const ranks_request *r = b->request;
+  const size_t length = strlen(r->weak);
+  const problem_parameter *k = scene->parameter;
+  for (int i = 0; i < r->timed.settings->count; i++) {
+    const char *word = r->timed.settings->word[i];
+    if (strncmp(word, r->weak, length) == 0 && word[length] == '=' &&
+        parse_number(word + length + 1, &b->base))
+      return DONE;
+  }
+  while (k->name != NULL && strcmp(k->name, r->weak) != 0) k++;
+  if (k->name == NULL)
+    return usage_error("bench: --weak %s: %s has no such parameter", r->weak, scene->name);
+  b->base = k->value;
+  return DONE;
+}
+
+/* Divide the mesh, and note what the whole one holds. */
+static dvi_status divide(const dvi_mesh *mesh, dvi_mesh **share, void *user)
+{
+  double *heap = user;
+  *heap = machine_heap() - *heap;
+  return ranks_divide(mesh, share, NULL);
+}
+
+static double agreements_of(const timed_march *timed)
+{
+  mesh_division first;
+  ranks_tell(0, dvi_field_degree(dvi_scene_field(timed->scene->scene)), &first);
+  return (double)first.agreements;
+}
+
+/* Time steps, and count agreements in them. */
+static int time_shared(const timed_request *request, const timed_march *timed, shared_run *run)
+{
+  dvi_march_facts facts;
+  const double before = agreements_of(timed);
+  const int code = timed_steps(request, timed, run->ranks, &run->seconds);
+  if (code != DONE) return code;
+  dvi_march_facts_of(timed->march, &facts);
+  run->agreements = (agreements_of(timed) - before) / (double)facts.steps;
+  return measure_refresh(timed, run, request->rounds);
+}
+
+static int measure_shared(ranks_bench *b, const timed_request *request, shared_run *run)
+{
+  double heap = machine_heap();
+  const dvi_scene_division division = {.size = sizeof division, .divide = divide, .user = &heap};
+  timed_march timed;
+  int code = timed_open(request, &division, &timed);
+  if (code == DONE) {
+    find_cut(&timed, run);
+    run->is_oversubscribed = ranks_on_machine() > b->cores;
+    if (!run->is_weak) b->mesh_bytes = heap;
+    if (!run->is_weak && b->request->weak != NULL) code = find_base(b, timed.scene);
+  }
+  if (code == DONE) code = time_shared(request, &timed, run);
+  timed_close(&timed);
+  return code;
+}
+
+/* ---- a mesh that grows ---- */
+
+static int measure_weak(ranks_bench *b, double cells, shared_run *run)
+{
+  static const double tolerance = 0.05; /* of the number of cells, which are whole */
+  words settings = {.count = 0};
+  timed_request grown = b->request->timed;
+  char text[TEXT_SIZE];
+  const size_t length = strlen(b->request->weak);
+  for (int i = 0; i < grown.settings->count; i++) {
+    const char *word = grown.settings->word[i];
+    if (strncmp(word, b->request->weak, length) != 0 || word[length] != '=')
+      settings.word[settings.count++] = word;
+  }
+  if (settings.count == WORDS_MAX) return usage_error("bench: too many settings for --weak");
+  (void)snprintf(text, sizeof text, "%s=%.17g", b->request->weak, b->base * run->ranks);
+  settings.word[settings.count++] = text;
+  grown.settings = &settings;
+  const int code = measure_shared(b, &grown, run);
+  if (code != DONE || fabs(run->cells / (cells * run->ranks) - 1) < tolerance) return code;
+  return usage_error(
+      "bench: --weak %s: with %s the mesh has %.0f cells, and not %d times %.0f; the "
+      "cells must grow in proportion",
+      b->request->weak, text, run->cells, run->ranks, cells);
+}
+
+/* ---- the machine ---- */
+
+static int measure_network(ranks_bench *b)
+{
+  char *bytes = calloc(LARGE, 1);
+  b->latency = b->bandwidth = (double)NAN;
+  b->is_one_machine = ranks_on_machine() == 2;
+  if (bytes == NULL) return library_error(DVI_NO_MEMORY);
+  const double small = ranks_ping(bytes, SMALL, MESSAGES), large = ranks_ping(bytes, LARGE, 30);
+  free(bytes);
+  if (!(small > 0) || !(large > small)) {
+    complain("bench: messages between processes could not be timed");
+    return FAILED;
+  }
+  b->latency = small;
+  b->bandwidth = LARGE / (large - small);
+  return DONE;
+}
+
+/* Measure what a message takes in a refresh, by a mesh so small that its bytes do not count. */
+static int measure_message(ranks_bench *b)
+{
+  const dvi_generator_options line = {.size = sizeof line, .cells = {16}};
+  double values[17] = {0}, least = INFINITY;
+  dvi_mesh *mesh = NULL, *share = NULL;
+  dvi_status status = dvi_mesh_generate("interval", &line, &mesh);
+  if (status == DVI_OK) status = ranks_divide(mesh, &share, NULL);
+  for (long round = 0; round <= b->request->timed.rounds && status == DVI_OK; round++) {
+    const double began = elapsed_now();
+    for (int i = 0; i < MESSAGES && status == DVI_OK; i++) status = ranks_refresh(0, values);
+    least = fmin(least, (elapsed_now() - began) / MESSAGES);
+  }
+  dvi_mesh_destroy(&share);
+  dvi_mesh_destroy(&mesh);
+  b->refresh = least;
+  return status == DVI_OK ? DONE : library_error(status);
+}
+
+/* Measure on the first processes, while the others sleep. Returns the exit code of all of them. */
+static int with(int ranks, int (*measure)(ranks_bench *b, int ranks), ranks_bench *b)
+{
+  const bool works = ranks_among(ranks);
+  if (works) cores_keep(ranks_number());
+  return ranks_rest(works ? measure(b, ranks) : DONE);
+}
+
+static int alone(ranks_bench *b, int ranks)
+{
+  (void)ranks;
+  return measure_alone(b);
+}
+
+static int network(ranks_bench *b, int ranks)
+{
+  (void)ranks;
+  const int code = measure_message(b);
+  return code == DONE ? measure_network(b) : code;
+}
+
+static int triad(ranks_bench *b, int ranks)
+{
+  triad_run *run = b->triad + b->triads;
+  *run = (triad_run){ranks, (double)NAN};
+  if (ranks_on_machine() > b->cores) return DONE; /* turns would not be told from bandwidth */
+  run->bandwidth = triad_together(ranks, b->request->timed.rounds);
+  return isfinite(run->bandwidth) ? DONE : FAILED;
+}
+
+static int shared(ranks_bench *b, int ranks)
+{
+  shared_run *run = b->run + b->shared;
+  *run = (shared_run){.ranks = ranks};
+  return measure_shared(b, &b->request->timed, run);
+}
+
+/* The run before it has the mesh of one rank. */
+static int weak(ranks_bench *b, int ranks)
+{
+  shared_run *run = b->run + b->shared;
+  *run = (shared_run){.ranks = ranks, .is_weak = true};
+  return measure_weak(b, run[-1].cells, run);
+}
+
+/* ---- all of it ---- */
+
+/* Give the i-th number of ranks to be measured, 0 beyond the last one. Without any there is the
+ * number of processes. */
+static int measured_ranks(const rank_counts *asked, int i)
+{
+  int found = 0;
+  for (int k = 0; k < asked->count; k++)
+    if (asked->number[k] >= 2 && asked->number[k] <= ranks_count() && found++ == i)
+      return (int)asked->number[k];
+  return found == 0 && i == 0 ? ranks_count() : 0;
+}
+
+static int measure_all(ranks_bench *b)
+{
+  int code = with(1, alone, b), ranks;
+  for (int i = 0; i < SHARED_MAX && (ranks = measured_ranks(&b->asked, i)) > 0; i++) {
+    if (code == DONE) code = with(ranks, shared, b);
+    b->shared++;
+    if (code == DONE && b->request->weak != NULL) code = with(ranks, weak, b);
+    b->shared += b->request->weak != NULL;
+  }
+  if (code == DONE) code = with(2, network, b);
+  if (code == DONE) code = with(1, triad, b);
+  b->triads++;
+  for (int i = 0; i < SHARED_MAX && (ranks = measured_ranks(&b->asked, i)) > 0; i++) {
+    if (code == DONE) code = with(ranks, triad, b);
+    b->triads++;
+  }
+  return code;
+}
+
+int ranks_bench_run(const ranks_request *request)
+{
+  ranks_bench b = {.request = request, .cores = cores_count()};
+  int code = ranks_agree(rank_counts_read(request->scaled, &b.asked));
+  if (code == DONE) code = measure_all(&b);
+  if (code == DONE && ranks_is_first()) code = ranks_report(&b);
+  return code;
+}
