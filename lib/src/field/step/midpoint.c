@@ -1,5 +1,5 @@
-/* The implicit midpoint rule for waves on shares of a mesh. With q_m = q0 + x the equations of a step
- * (docs/methods/midpoint.md) are
+/* The implicit midpoint rule for waves on shares of a mesh. With q_m = q0 + x the equations of a
+ * step (docs/methods/midpoint.md) are
  *
  *     M x - h/2 p0 + h^2/4 (K q_m - load + w V_u(q_m)) = 0,
  *     q1 = q0 + 2 x,      p1 = p0 - h (K q_m - load + w V_u(q_m)).
@@ -112,7 +112,7 @@ static dvi_status explain(const midpoint *m, dvi_status status, const dvi__ellip
   return dvi__fail_in(status,
                       "march: midpoint: step %lld from t = %.9g with h = %.6g failed; the state is "
                       "unchanged, try a smaller step",
-                      (long long)(m->at.n + 1), time_of(m, m->at.n), m->at.dt);
+                      (long long)m->at.n + 1, time_of(m, m->at.n), m->at.dt);
 }
 
 /* Nothing changes until the solution is there. The force is known of own unknowns alone. */
