@@ -1,9 +1,12 @@
-# What is solved on shares has the same bits on 1 to 4 processes. Usage: implicit.sh MPIEXEC PROGRAM
+# What is solved on shares has the same bits on any number of processes.
+# Usage: implicit.sh MPIEXEC PROGRAM WHAT RANKS...
 set -e
+mpiexec=$1 program=$2 what=$3
+shift 3
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-for ranks in 1 2 3 4; do
-  "$1" -n $ranks "$2" >"$work/$ranks"
-  cmp "$work/1" "$work/$ranks"
+for ranks; do
+  "$mpiexec" -n "$ranks" "$program" "$what" >"$work/$ranks"
+  cmp "$work/$1" "$work/$ranks"
 done
-test -s "$work/1"
+test -s "$work/$1"

@@ -1,5 +1,5 @@
-/* Aggregates of the unknowns of a matrix for multigrid. They depend on the matrix and on the numbers
- * of its columns, and not on the processes that hold it. */
+/* Aggregates of the unknowns of a matrix for multigrid. They depend on the matrix and on the
+ * numbers of its columns, and not on the processes that hold it. */
 #ifndef DVI_PETSC_AGGREGATE_H
 #define DVI_PETSC_AGGREGATE_H
 #include "operator.h"

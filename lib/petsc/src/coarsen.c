@@ -1,5 +1,6 @@
-/* Smoothed aggregation: P = (I - omega D^-1 A) P_0, where a column of P_0 is 1 on the unknowns of an
- * aggregate (Vanek, Mandel and Brezina 1996). A row of P is computed by the owner of the unknown.
+/* Smoothed aggregation: P = (I - omega D^-1 A) P_0, where a column of P_0 is 1 on the unknowns of
+ * an aggregate (Vanek, Mandel and Brezina 1996). A row of P is computed by the owner of the
+ * unknown.
  *
  * An entry of P^T A P is a sum over unknowns of several processes. Its terms are brought near 1 by
  * powers of two, and rounded to multiples of 2^-38 of the largest one. Sums of up to 2^15 of them
@@ -77,13 +78,27 @@ static PetscInt make_row(const work *w, PetscReal omega, PetscInt i, PetscInt *a
   return count;
 }
 
+/* Take the rows of ghosts from their owners. */
+static PetscErrorCode tell_rows(work *w)
+{
+  MPI_Datatype numbers, values;
+  PetscCallMPI(MPI_Type_contiguous((int)w->width, MPIU_INT, &numbers));
+  PetscCallMPI(MPI_Type_contiguous((int)w->width, MPIU_SCALAR, &values));
+  PetscCallMPI(MPI_Type_commit(&numbers));
+  PetscCallMPI(MPI_Type_commit(&values));
+  PetscCall(dvi__operator_refresh(w->A, numbers, w->aggregate));
+  PetscCall(dvi__operator_refresh(w->A, values, w->weight));
+  PetscCallMPI(MPI_Type_free(&numbers));
+  PetscCallMPI(MPI_Type_free(&values));
+  return 0;
+}
+
 /* Make own rows of P, and take those of ghosts from their owners. */
 static PetscErrorCode make_rows(work *w, PetscReal omega)
 {
   const dvi__operator *A = w->A;
   PetscInt longest = 1, *aggregate;
   PetscScalar *weight;
-  MPI_Datatype numbers, values;
   for (PetscInt i = 0; i < A->rows; i++) longest = PetscMax(longest, A->start[i + 1] - A->start[i]);
   PetscCall(PetscMalloc2((size_t)longest + 1, &aggregate, (size_t)longest + 1, &weight));
   w->width = 1;
@@ -99,15 +114,7 @@ static PetscErrorCode make_rows(work *w, PetscReal omega)
     PetscCall(PetscArraycpy(w->weight + (size_t)i * width, weight, count));
   }
   PetscCall(PetscFree2(aggregate, weight));
-  PetscCallMPI(MPI_Type_contiguous((int)w->width, MPIU_INT, &numbers));
-  PetscCallMPI(MPI_Type_contiguous((int)w->width, MPIU_SCALAR, &values));
-  PetscCallMPI(MPI_Type_commit(&numbers));
-  PetscCallMPI(MPI_Type_commit(&values));
-  PetscCall(dvi__operator_refresh(A, numbers, w->aggregate));
-  PetscCall(dvi__operator_refresh(A, values, w->weight));
-  PetscCallMPI(MPI_Type_free(&numbers));
-  PetscCallMPI(MPI_Type_free(&values));
-  return 0;
+  return tell_rows(w);
 }
 
 static PetscErrorCode make_matrix(MPI_Comm comm, PetscInt rows, PetscInt columns, Mat *made)
@@ -257,7 +264,7 @@ typedef struct triplets {
 
 static PetscErrorCode make_room(triplets *t, PetscInt more)
 {
-  if (t->count + more <= t->room) return 0;
+  if (t->row != NULL && t->count + more <= t->room) return 0;
   t->room = 2 * t->room + more;
   PetscCall(PetscRealloc((size_t)t->room * sizeof *t->row, &t->row));
   PetscCall(PetscRealloc((size_t)t->room * sizeof *t->column, &t->column));

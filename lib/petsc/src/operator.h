@@ -31,8 +31,7 @@ typedef struct dvi__unknowns {
 PetscErrorCode dvi__operator_of_share(MPI_Comm comm, const dvi__unknowns *unknowns,
                                       const dvi_matrix *A, dvi__operator *made);
 
-/* Give the unknowns [count] their columns in such an operator: own ones first. Returns their number.
- */
+/* Give the unknowns [count] their columns in such an operator, own ones first, and their number. */
 PetscErrorCode dvi__place_unknowns(MPI_Comm comm, const dvi__unknowns *unknowns, PetscInt *place,
                                    PetscInt *own);
 

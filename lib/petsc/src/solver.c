@@ -150,8 +150,8 @@ static PetscErrorCode end_gradients(KSP ksp, PetscInt iteration, PetscReal norm,
   return 0;
 }
 
-/* Newton's corrections shrink by the square of what they shrank by before, until conjugate gradients
- * leave more. */
+/* Newton's corrections shrink by the square of what they shrank by before, until conjugate
+ * gradients leave more. */
 static PetscErrorCode end_newton(SNES snes, PetscInt iteration, PetscReal size,
                                  PetscReal correction, PetscReal residual,
                                  SNESConvergedReason *reason, void *user)

@@ -1,5 +1,5 @@
-/* What solves symmetric equations on all processes together (field/mesh/elliptic.h): Newton's method
- * of SNES, whose corrections come from the conjugate gradients of KSP with multigrid. */
+/* What solves symmetric equations on all processes together (field/mesh/elliptic.h): Newton's
+ * method of SNES, whose corrections come from the conjugate gradients of KSP with multigrid. */
 #ifndef DVI_PETSC_SOLVER_H
 #define DVI_PETSC_SOLVER_H
 #include "field/mesh/elliptic.h"

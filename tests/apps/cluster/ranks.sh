@@ -1,7 +1,6 @@
 #!/bin/sh
 # All that mpirun -np N dvi run does: the rows of dvi run, checkpoints that go on with other numbers
-# of processes, files, signals, kills, refusals; dvi explain, and dvi bench --scale ranks=. Skipped
-# where dvi has no module for processes.
+# of processes, files, signals, kills, refusals. Skipped where dvi has no module for processes.
 # Usage: ranks.sh DVI
 set -u
 here=$(cd "$(dirname "$0")" && pwd)
@@ -25,40 +24,17 @@ same one.csv all.csv "standard output"
 as_one 2 wave.yaml --final --plot all.svg
 [ -s all.svg ] || fail "no plot"
 
-# Processes explain who owns what: all cells have an owner, and every message is counted.
-mpirun -np 3 "$dvi" explain torus.yaml --csv shares.csv >out || fail "explain fails"
-says out '^shares: 324 cells among 3 processes by [a-z]*, 10[0-9] to 1[0-9]* each' explain
-awk -F, 'NR > 1 { cells += $3
-    wrong += !($4 > 0 && $5 == 2 && $6 == 2 && $7 > 0 && $7 % 8 == 0) }
-  END { exit !(NR == 4 && cells == 324 && !wrong) }' shares.csv ||
-  fail "explain: $(cat shares.csv)"
-
-# A step is measured on processes that dvi starts, and predicted for more of them.
-"$dvi" bench torus.yaml --scale ranks=1,2,4,...,300 --rounds 1 --steps 2 --csv scale.csv \
-  >out || fail "bench: no scaling"
-for words in '^Ranks that share torus.yaml' '^triad .* of 2 processes together' \
-  '^  network: .*shared memory' '^  fit: .*the largest deviation is' '^What breaks first'; do
-  grep -q "$words" out || fail "bench: no '$words' in: $(cat out)"
+# By midpoint any number of processes writes the same rows, which are those of one up to roundoff.
+{ cat wave.yaml; echo 'potential: 1 - cos(u)'; } >kink.yaml
+for count in 1 2 3; do
+  by $count kink.yaml --method midpoint --h 0.05 --every 5 >rows$count.csv ||
+    fail "$count processes: no rows by midpoint"
 done
-header=scaling,problem,ranks,rank_cells,step_seconds,efficiency,exchange,messages,bytes
-header=$header,measured_seconds,measured_efficiency,oversubscribed,measured_lower
-header=$header,measured_upper,cells
-[ "$(head -n 1 scale.csv)" = $header ] || fail "bench: $(head -n 1 scale.csv)"
-# One rank waits for nobody, and what was measured stands in its rows alone.
-awk -F, 'NR == 1 { next }
-  { measured = $3 == 1 || ($3 == 2 && $1 == "strong")
-    if (!($5 > 0 && $6 > 0 && $7 >= 0 && $7 < 1)) bad++
-    if (($7 == 0) != ($3 == 1) || ($10 != "") != measured) bad++
-    if ($15 != ($1 == "weak" ? 324 * $3 : 324)) bad++ }
-  END { exit !(NR == 21 && !bad) }' scale.csv || fail "bench: $(cat scale.csv)"
-# What makes no sense is refused before processes start.
-for option in '--scale ranks=1,2 --latency 0' '--scale ranks=1,2 --bandwidth nan' \
-  '--scale ranks=2,1' '--scale ranks=1,2 --method avi' '--scale ranks=1,2 --at 1e-6' \
-  '--latency 1e-6' '--scale threads=1,2 --weak n'; do
-  # shellcheck disable=SC2086
-  "$dvi" bench torus.yaml $option >out 2>&1
-  [ $? -eq 2 ] || fail "bench $option: $(cat out)"
-done
+same rows2.csv rows3.csv "two and three processes by midpoint"
+paste -d , rows1.csv rows3.csv | awk -F , '
+  NR == 1 { if ($1 != $3 || $2 != $4) exit 1; next }
+  $1 != $3 || ($2 - $4) ^ 2 > 1e-26 { exit 1 }
+  END { if (NR != 6) exit 1 }' || fail "midpoint: $(cat rows3.csv), and of one $(cat rows1.csv)"
 
 # ---- checkpoints ----
 

@@ -5,8 +5,8 @@
 #include <dvi/matrix.h>
 #include <dvi/mesh.h>
 
-/* Equations r(x) = 0 with the Jacobian A + D(x), where A is positive definite or semidefinite, and D
- * is diagonal. All arrays of unknowns have those of other processes, too, which the solver gives,
+/* Equations r(x) = 0 with the Jacobian A + D(x), where A is positive definite or semidefinite, and
+ * D is diagonal. All arrays of unknowns have those of other processes, too, which the solver gives,
  * and which it does not ask for. */
 typedef struct dvi__elliptic {
   const dvi_mesh *share;

@@ -1,6 +1,6 @@
-/* The components of the mesh in which no value of a field is fixed. Those of a share are those of the
- * whole mesh: sets of the share's vertices are joined through vertices that several processes hold.
- */
+/* The components of the mesh in which no value of a field is fixed. Those of a share are those of
+ * the whole mesh: sets of the share's vertices are joined through vertices that several processes
+ * hold. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -50,15 +50,15 @@ static int join_sets(const labels *l)
   return changes;
 }
 
-/* Labels of vertices that others own may be less there, and those of own ones less here. These reach
- * their owners as sets that change: any vertex of a share has neighbours of the owner. */
+/* Labels of vertices that others own may be less there, and those of own ones less here. Owners
+ * find these by themselves: they have all neighbours of their vertices. */
 static dvi_status join_shares(const labels *l)
 {
   const dvi_mesh *mesh = l->field->mesh;
   double *before = DVI_NEW(double, l->field->cells), changes = 1;
   dvi_status status = dvi__agree(
       mesh, before != NULL ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "field: no memory for components"));
-  while (changes > 0 && status == DVI_OK) {
+  while (changes > 0 && status == DVI_OK && before != NULL) {
     memcpy(before, l->label, (size_t)l->field->cells * sizeof *before);
     status = dvi__refresh(mesh, 0, l->label);
     for (int64_t v = 0; v < l->field->cells; v++) l->label[v] = fmin(l->label[v], before[v]);
@@ -101,13 +101,13 @@ static dvi_status find_shared(dvi_field *field, const int *root)
   dvi_status status = dvi__agree(
       field->mesh,
       l.label != NULL ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "field: no memory for components"));
-  if (status == DVI_OK) {
+  if (status == DVI_OK && l.label != NULL) {
     for (int64_t v = 0; v < field->cells; v++)
       l.label[v] = field->number[v] < 0 ? -1 : (double)dvi__whole_number(field->mesh, 0, v);
     (void)join_sets(&l);
     status = join_shares(&l);
   }
-  if (status == DVI_OK) status = number_shared(field, &l);
+  if (status == DVI_OK && l.label != NULL) status = number_shared(field, &l);
   dvi__release(l.label);
   return status;
 }
@@ -125,7 +125,7 @@ dvi_status dvi__field_find_components(dvi_field *field)
   if (status == DVI_OK) dvi__find_components(field->mesh, root);
   if (status == DVI_OK && field->mesh->share == NULL)
     number_components(field, root, root + field->cells);
-  else if (status == DVI_OK)
+  else if (status == DVI_OK && root != NULL)
     status = find_shared(field, root);
   dvi__release(root);
   return status;

@@ -133,7 +133,8 @@ dvi_status dvi__field_newton(const dvi_field *field, double *x, dvi_field_solve_
   dvi_status status = s.second != NULL && s.pattern.start != NULL
                           ? DVI_OK
                           : dvi__fail(DVI_NO_MEMORY, "field: no memory for Newton's method");
-  for (int64_t i = 0; i <= K->rows && status == DVI_OK; i++) s.pattern.start[i] = (int)K->start[i];
+  for (int64_t i = 0; i <= K->rows && s.pattern.start != NULL; i++)
+    s.pattern.start[i] = (int)K->start[i];
   if (status == DVI_OK) status = run(&s, x, report);
   dvi__release(s.second);
   dvi__release(s.pattern.start);

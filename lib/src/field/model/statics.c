@@ -304,7 +304,8 @@ static dvi_status measure(statics *s)
 static dvi_status solve(statics *s, double *u)
 {
   const dvi_field *f = s->field;
-  DVI_TRY(dvi__agree(f->mesh, allocate(s)));
+  const dvi_status allocated = dvi__agree(f->mesh, allocate(s));
+  if (allocated != DVI_OK || s->b == NULL) return allocated;
   s->report.unknowns = f->whole_unknowns;
   if (f->potential.density != NULL) {
     for (int64_t i = 0; i < f->unknowns; i++) s->x[i] = u[f->unknown[i]];

@@ -13,6 +13,8 @@ int dvi_scene_marches(const dvi_scene *scene, const char *method)
   if (method == NULL) return 0;
   if (scene->density != NULL) return dvi__density_marches(scene, method);
   if (dvi__is_elastic(scene)) return dvi__elastic_marches(method);
+  /* Only shares of waves march by midpoint. Whole meshes have it as systems do. */
+  if (dvi__is_share(scene) && strcmp(method, "midpoint") == 0) return scene->field->maxwell == NULL;
   const size_t length = strcspn(method, ":");
   const char *name;
   for (int i = 0; (name = dvi_march_method_name(i)) != NULL; i++)
@@ -81,7 +83,8 @@ dvi_status dvi_scene_march_create(const dvi_scene *scene, const dvi_march_option
   if (dvi__is_elastic(scene)) return dvi__elastic_march(scene, &all, march);
   const struct dvi__scene_field *f = scene->field;
   const bool divides_grid = suits_grid(f, &all) && f->ranks != NULL;
-  if (dvi__is_share(scene) && !divides_grid && strcmp(all.method, "leapfrog") != 0)
+  if (dvi__is_share(scene) && !divides_grid && strcmp(all.method, "leapfrog") != 0 &&
+      strcmp(all.method, "midpoint") != 0)
     return DVI_UNSUPPORTED;
   if (f->kind != DVI_CIRCUMCENTRIC && strcmp(all.method, "yee") == 0 &&
       dvi_mesh_kind(f->mesh) == DVI_BOXES)
