@@ -155,6 +155,9 @@ sed 's/exp(/sqrt(x - 0.5)*exp(/' wave.yaml >nan.yaml
 sed 's/0.9, 0.13/3, 4/' probes.yaml >outside.yaml
 together 2 'the start is not finite at vertex' nan.yaml # on one process, on which the others wait
 together 2 '--method yee: several processes share yee on grids' wave.yaml --method yee
+sed 's/cells: .*/cells: [50]}/; s/{E: .*/{E: x}/; /^  e:/d; /^  s:/d; /^probes/d; /cpml/d' grid.yaml \
+  >line.yaml
+together 2 'yee: a grid of one axis cannot be divided' line.yaml
 together 2 "the probe 'b' is outside of the mesh" outside.yaml
 together 1 "cannot write '/nowhere/rows.csv'" wave.yaml --out /nowhere/rows.csv
 together 1 "cannot write '/nowhere/state'" wave.yaml --checkpoint /nowhere/state
