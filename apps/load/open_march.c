@@ -125,7 +125,7 @@ static int refuse(dvi_status status, const problem *scene, const dvi_march_optio
                "A: take leapfrog, or leave mpirun out";
     if (options->method != NULL) return usage_error("--method yee: %s", sentence);
     section = "method";
-  } else if (status == DVI_UNSUPPORTED && is_yee_on_mesh(scene, method)) {
+  } else if (status == DVI_UNSUPPORTED && ranks_count() == 1 && is_yee_on_mesh(scene, method)) {
     section = "star";
     sentence = "yee has no star: leave it out, or take leapfrog";
   }

@@ -112,7 +112,8 @@ says err '^dvi: run: continue with --resume a.state' 'a signal'
 tail -n 1 long.csv | grep -q '^[0-9.]*,[0-9.]*$' || fail "a signal: the last row is not complete"
 no_trace 'a signal'
 
-# mpirun hands a signal on, and waits for a second.
+# mpirun hands a signal on, and waits.
+export OMPI_MCA_odls_base_sigkill_timeout=5
 rm -f long.csv a.state
 begin 2 a.state wave.yaml --t-end 2e4 --every 1000 --out long.csv --checkpoint a.state \
   --checkpoint-every 1000
@@ -121,6 +122,7 @@ ended
 [ "$code" -ne 0 ] || fail "a signal to mpirun: exit code 0"
 says err '^dvi: run: signal 15 ended the run at t' 'a signal to mpirun'
 [ -s long.csv ] || fail "a signal to mpirun: no rows"
+unset OMPI_MCA_odls_base_sigkill_timeout
 
 # ---- refusals ----
 
@@ -131,6 +133,9 @@ sed 's/exp(/sqrt(x - 0.5)*exp(/' wave.yaml >nan.yaml
 sed 's/0.9, 0.13/3, 4/' probes.yaml >outside.yaml
 together 2 'the start is not finite at vertex' nan.yaml # on one process, on which the others wait
 together 2 '--method yee: several processes share yee on grids' wave.yaml --method yee
+sed -e 's/cells: .*/cells: [50]}/' -e 's/{E: .*/{E: x}/' -e '/^ *[es]:/d' -e '/^probes/d' \
+  -e '/cpml/d' grid.yaml >line.yaml
+together 2 'yee: a grid of one axis cannot be divided' line.yaml
 together 2 "the probe 'b' is outside of the mesh" outside.yaml
 together 1 "cannot write '/nowhere/rows.csv'" wave.yaml --out /nowhere/rows.csv
 together 1 "cannot write '/nowhere/state'" wave.yaml --checkpoint /nowhere/state
