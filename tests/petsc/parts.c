@@ -108,7 +108,12 @@ static dvi_mesh *cut_same(const dvi_mesh *mesh, const dvi_mesh *read)
 {
   const int n = dvi_mesh_dimension(mesh);
   const int64_t cells = dvi_mesh_count(mesh, n), *number = dvi_mesh_share_numbers(read, n);
-  const dvi_ranks all = {sizeof all, rank, ranks, refresh, sum, largest, NULL};
+  const dvi_ranks all = {.size = sizeof all,
+                         .rank = rank,
+                         .count = ranks,
+                         .refresh = refresh,
+                         .sum = sum,
+                         .largest = largest};
   int *owner = DVI_NEW(int, cells);
   dvi_mesh *cut = NULL;
   for (int64_t c = 0; c < dvi_mesh_count(read, n); c++)

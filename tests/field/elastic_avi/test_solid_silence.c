@@ -83,7 +83,12 @@ START_TEST(silence_is_told_until_a_start)
   dvi_mesh *whole = mesh_of_plane(), *share = NULL;
   int owner[60];
   line l = {.failing = -1};
-  const dvi_ranks ranks = {sizeof ranks, 0, 2, refresh, sum, largest, &l};
+  const dvi_ranks ranks = {.size = sizeof ranks,
+                           .count = 2,
+                           .refresh = refresh,
+                           .sum = sum,
+                           .largest = largest,
+                           .user = &l};
   patience p = {.most = 1000000000};
   dvi_elastic *solid = NULL;
   dvi_march *march = NULL;
