@@ -32,6 +32,7 @@ dvi_status dvi__world_join(MPI_Comm comm, dvi__world *world)
 {
   static const MPI_Comm none = 0;
   const int is_given = comm != MPI_COMM_NULL && comm != none;
+  *world = (dvi__world){.comm = MPI_COMM_NULL};
   if (MPI_Comm_dup(is_given ? comm : MPI_COMM_WORLD, &world->comm) != MPI_SUCCESS)
     return dvi__fail(DVI_SOLVER_FAILED, "petsc: MPI could not make a communicator");
   (void)MPI_Comm_set_errhandler(world->comm, MPI_ERRORS_RETURN);
