@@ -6,7 +6,7 @@
 #include "core/status.h"
 #include "division.h"
 #include "owners.h"
-#include "solver.h"
+#include "solve/solver.h"
 
 /* ---- how processes speak with each other ---- */
 

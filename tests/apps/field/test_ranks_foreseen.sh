@@ -1,6 +1,6 @@
 #!/bin/sh
-# dvi explain tells and foresees the shares of processes, and dvi bench --scale ranks= predicts steps
-# of more of them. Skipped where dvi has no module for processes.
+# dvi explain tells and foresees the shares of processes, and dvi bench --scale ranks= predicts the
+# steps of more of them. Skipped where dvi has no module for processes.
 # Usage: test_ranks_foreseen.sh DVI
 set -u
 here=$(cd "$(dirname "$0")" && pwd)

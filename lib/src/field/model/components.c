@@ -63,7 +63,7 @@ static dvi_status join_shares(const labels *l)
     status = dvi__refresh(mesh, 0, l->label);
     for (int64_t v = 0; v < l->field->cells; v++) l->label[v] = fmin(l->label[v], before[v]);
     changes = join_sets(l);
-    changes = changes || memcmp(before, l->label, (size_t)l->field->cells * sizeof *before) != 0;
+    if (memcmp(before, l->label, (size_t)l->field->cells * sizeof *before) != 0) changes = 1;
     if (status == DVI_OK) status = dvi__largest_of_all(mesh, 1, &changes);
   }
   dvi__release(before);

@@ -1,10 +1,10 @@
 /* Equations of a field's unknowns on all processes that hold shares of its mesh. */
 #ifndef DVI_FIELD_MODEL_ON_ALL_H
 #define DVI_FIELD_MODEL_ON_ALL_H
-#include "field/mesh/elliptic.h"
+#include "field/model/elliptic.h"
 #include "field/model/field.h"
 
-/* Equations with the Jacobian M + stiffness K + D, as in field/mesh/elliptic.h. */
+/* Equations with the Jacobian M + stiffness K + D, as in field/model/elliptic.h. */
 typedef struct dvi__field_equations {
   const dvi_field *field;
   double mass, stiffness; /* factors of M and K. Both 0: K alone */

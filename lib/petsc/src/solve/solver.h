@@ -1,8 +1,8 @@
-/* What solves symmetric equations on all processes together (field/mesh/elliptic.h): Newton's
+/* What solves symmetric equations on all processes together (field/model/elliptic.h): Newton's
  * method of SNES, whose corrections come from the conjugate gradients of KSP with multigrid. */
 #ifndef DVI_PETSC_SOLVER_H
 #define DVI_PETSC_SOLVER_H
-#include "field/mesh/elliptic.h"
+#include "field/model/elliptic.h"
 
 /* The user of the ranks is a dvi__world. */
 extern const dvi_ranks_solver dvi__solver_of_petsc;

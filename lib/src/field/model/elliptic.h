@@ -1,7 +1,7 @@
 /* Symmetric equations whose unknowns are cells of a share, and what solves them on all processes
  * together: the solver that came with the share (dvi_ranks.solver). */
-#ifndef DVI_FIELD_MESH_ELLIPTIC_H
-#define DVI_FIELD_MESH_ELLIPTIC_H
+#ifndef DVI_FIELD_MODEL_ELLIPTIC_H
+#define DVI_FIELD_MODEL_ELLIPTIC_H
 #include <dvi/matrix.h>
 #include <dvi/mesh.h>
 
