@@ -221,7 +221,7 @@ static void check_saved(const dvi_mesh *share, const dvi_field *field, double h,
 {
   static unsigned char bytes[1 << 20];
   size_t size = 0;
-  double here, there = 0;
+  double here = 0, there = 0;
   dvi_march *other = NULL;
   dvi_status status = begin(share, field, h, &other);
   if (status == DVI_OK) status = dvi_march_save_memory(march, bytes, sizeof bytes, &size);

@@ -220,8 +220,8 @@ static dvi_status take_place(const dvi_division_options *options, dvi_division *
 dvi_status dvi__division_begin(const dvi_division_options *options, dvi_division **division)
 {
   DVI_TRY(check_options(options));
-  DVI_TRY(take_place(options, division));
-  return choose(options, *division);
+  const dvi_status status = take_place(options, division);
+  return status == DVI_OK && *division != NULL ? choose(options, *division) : status;
 }
 
 dvi_status dvi_mesh_partition(const dvi_mesh *mesh, const dvi_division_options *options, int parts,

@@ -420,8 +420,8 @@ START_TEST(neighbours_speak_of_what_they_share_alone)
   const cost classes = cost_of(0, &messages, &numbers), free = cost_of(1, &messages, &numbers);
   ck_assert_int_eq(classes.slots, 192);
   for (int r = 0; r < 2; r++) ck_assert_int_eq(classes.exchanges[r], 3);
-  ck_assert(classes.acts[0] + classes.acts[1] < 1.01 * (double)classes.events);
-  ck_assert(free.acts[0] + free.acts[1] < 1.01 * (double)free.events);
+  ck_assert((double)(classes.acts[0] + classes.acts[1]) < 1.01 * (double)classes.events);
+  ck_assert((double)(free.acts[0] + free.acts[1]) < 1.01 * (double)free.events);
   ck_assert(free.acts[0] + free.acts[1] > free.events);
   ck_assert_int_eq(free.acts_at_edges[0], free.acts_at_edges[1]);
   ck_assert_int_eq(numbers, 2 * 8 * free.acts_at_edges[0]);

@@ -202,13 +202,13 @@ static int read_rows(hid_t set, const dvi__slab *slab, void *numbers)
 
 dvi_status dvi__slabs_read(const dvi__slabs *file, const dvi__slab *slab, void *numbers)
 {
-  int64_t rows;
-  int width;
+  int64_t rows = 0;
+  int width = 0;
   DVI_TRY(dvi__slabs_shape(file, slab->name, &rows, &width));
   if (slab->first + slab->rows > rows || width != slab->width)
     return dvi__slabs_refuse(file, "\"%s\" has %lld rows of %d numbers, and %lld of %d are needed",
                              slab->name, (long long)rows, width > 0 ? width : 1,
-                             (long long)(slab->first + slab->rows),
+                             (long long)slab->first + (long long)slab->rows,
                              slab->width > 0 ? slab->width : 1);
   const hid_t set = H5Dopen2(file->id, slab->name, H5P_DEFAULT);
   const int is_read = set >= 0 && has_class(set, slab->type) && read_rows(set, slab, numbers);
