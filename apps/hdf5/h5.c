@@ -68,11 +68,20 @@ static hid_t access_list(void)
   return list;
 }
 
+hid_t h5_creation_list(hid_t kind)
+{
+  const hid_t list = H5Pcreate(kind);
+  if (list >= 0) (void)H5Pset_obj_track_times(list, false);
+  return list;
+}
+
 hid_t h5_create(const char *path)
 {
   quieten();
-  const hid_t list = access_list(), file = H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, list);
+  const hid_t list = access_list(), root = h5_creation_list(H5P_FILE_CREATE),
+              file = H5Fcreate(path, H5F_ACC_TRUNC, root, list);
   if (file < 0) (void)h5_refuse_by_library();
+  (void)H5Pclose(root);
   (void)H5Pclose(list);
   return file;
 }
@@ -242,7 +251,7 @@ bool h5_array_create(hid_t place, const char *name, hid_t type, int width, int64
   const hsize_t most[] = {H5S_UNLIMITED, (hsize_t)width},
                 block[] = {(hsize_t)chunk, (hsize_t)width};
   const hid_t space = H5Screate_simple(array->rank, array->size, most);
-  const hid_t list = H5Pcreate(H5P_DATASET_CREATE);
+  const hid_t list = h5_creation_list(H5P_DATASET_CREATE);
   (void)H5Pset_chunk(list, array->rank, block);
   array->set = H5Dcreate2(place, name, type, space, H5P_DEFAULT, list, H5P_DEFAULT);
   (void)H5Pclose(list);

@@ -15,6 +15,10 @@ bool h5_refuse_by_library(void);
 /** Return what was remembered. */
 const char *h5_reason(void);
 
+/** Make the list of properties by which an object of a class is created, for H5Pclose. The time is
+ * left out, so that the same contents are the same bytes. */
+hid_t h5_creation_list(hid_t kind);
+
 /** Create a file that can be read while it is written. */
 hid_t h5_create(const char *path);
 

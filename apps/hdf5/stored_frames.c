@@ -70,7 +70,7 @@ static hdf5_frames *discard(hdf5_frames *frames)
 /* Create a group, which knows the order of its fields. */
 static hid_t make_group(hid_t place, const char *name)
 {
-  const hid_t list = H5Pcreate(H5P_GROUP_CREATE);
+  const hid_t list = h5_creation_list(H5P_GROUP_CREATE);
   (void)H5Pset_link_creation_order(list, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
   const hid_t group = H5Gcreate2(place, name, H5P_DEFAULT, list, H5P_DEFAULT);
   if (group < 0) (void)h5_refuse_by_library();

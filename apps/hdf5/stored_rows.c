@@ -244,7 +244,9 @@ static bool write_texts(hid_t group, int64_t rows, const hdf5_texts *texts, int 
 static bool write_all_texts(hid_t file, int64_t rows, const hdf5_texts *texts)
 {
   if (texts->columns == 0) return true;
-  const hid_t group = H5Gcreate2(file, "text", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  const hid_t list = h5_creation_list(H5P_GROUP_CREATE);
+  const hid_t group = H5Gcreate2(file, "text", H5P_DEFAULT, list, H5P_DEFAULT);
+  (void)H5Pclose(list);
   bool good = group >= 0 || h5_refuse_by_library();
   for (int j = 0; j < texts->columns && good; j++) good = write_texts(group, rows, texts, j);
   (void)H5Gclose(group);
