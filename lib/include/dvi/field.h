@@ -199,6 +199,16 @@ dvi_status dvi_field_lift(const dvi_field *field, const double *q, double *u);
 dvi_status dvi_field_project(const dvi_field *field, const double *u, const double *rate, double *q,
                              double *p);
 
+/** Find the n-cell that contains a point. Of several that share it, the one with the lowest number
+ *  in the whole mesh is taken. Called on all processes that share the field.
+ *
+ *  @param[in]  at      [space] the point
+ *  @param[out] cell    its number, or -1 where the share of this process has it not
+ *  @param[out] weight  as that of dvi_mesh_locate, if the cell is here
+ *  @retval DVI_BAD_ARGUMENT  the point lies outside, or an argument is missing
+ *  @retval (others)          as dvi_mesh_locate, on all processes */
+dvi_status dvi_field_locate(const dvi_field *field, const double *at, int *cell, double *weight);
+
 /** Give a number of a vertex or an edge. Return 0, or another number for a failure. */
 typedef int dvi_field_term(int64_t cell, double *term, void *user);
 

@@ -128,7 +128,7 @@ unset OMPI_MCA_odls_base_sigkill_timeout
 
 alone 'MPI knows of 1'
 together 2 'kepler is none' kepler
-together 2 'leapfrog and yee alone, not verlet' wave.yaml --method verlet
+together 2 'leapfrog and midpoint alone, not verlet' wave.yaml --method verlet
 sed 's/exp(/sqrt(x - 0.5)*exp(/' wave.yaml >nan.yaml
 sed 's/0.9, 0.13/3, 4/' probes.yaml >outside.yaml
 together 2 'the start is not finite at vertex' nan.yaml # on one process, on which the others wait

@@ -27,6 +27,11 @@ says err "several processes read 'torus.h5' in parts (mpirun -np 2 dvi run)" par
 "$dvi" run torus.yaml --columns energy,gauss,e --out one.csv || fail "torus.yaml: dvi run fails"
 by 3 parts.yaml --columns energy,gauss,e --out all.csv || fail "parts.yaml: 3 processes fail"
 same one.csv all.csv "3 processes read torus.h5"
+"$dvi" mesh staggered --cells 9,9 --size 1,1 --write plane.h5 >out || fail "no plane.h5"
+sed 's/^mesh: .*/mesh: {file: plane.h5}/' probes.yaml >plane.yaml
+"$dvi" run probes.yaml --out one.csv || fail "probes.yaml: dvi run fails"
+by 3 plane.yaml --out all.csv || fail "plane.yaml: 3 processes fail"
+same one.csv all.csv "3 processes read plane.h5"
 
 # The table of modes is that of one process, but for the line about how they were found.
 "$dvi" modes box.yaml --count 3 >one || fail "dvi modes fails"

@@ -237,6 +237,17 @@ dvi_status dvi_field_project(const dvi_field *field, const double *u, const doub
   return DVI_OK;
 }
 
+dvi_status dvi_field_locate(const dvi_field *field, const double *at, int *cell, double *weight)
+{
+  int64_t number;
+  if (field == NULL || at == NULL || cell == NULL || weight == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "field: a field, a point and room for a cell are needed");
+  DVI_TRY(dvi__locate_first(field->mesh, at, weight, &number));
+  if (number < 0) return dvi__fail(DVI_BAD_ARGUMENT, "field: the point lies outside of the mesh");
+  *cell = (int)dvi__find_number(field->mesh, field->mesh->n, number);
+  return DVI_OK;
+}
+
 /* Add the numbers of the cells that this process owns. */
 static dvi_status add_terms(const dvi_field *f, int64_t count, const int *cell,
                             dvi_field_term *term, void *user, dvi__block_sum *sum)

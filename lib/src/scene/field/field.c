@@ -212,7 +212,6 @@ void dvi__scene_field_clear(dvi_scene *scene)
   dvi_star_destroy(&scene->field->star);
   dvi_mesh_destroy(&scene->field->mesh);
   dvi_mesh_destroy(&scene->field->drawn);
-  dvi_mesh_destroy(&scene->field->whole);
 }
 
 /* ---- questions ---- */

@@ -180,11 +180,7 @@ static bool take_share(dvi_scene *scene, const dvi__tree *section)
   if (dvi_mesh_share_numbers(f->mesh, 0) != NULL) return true;
   if (!report(scene, section, scene->division->divide(f->mesh, &share, scene->division->user)))
     return false;
-  if (f->maxwell == NULL && !dvi__is_elastic(scene) &&
-      dvi__tree_find(scene->tree, "probes") != NULL)
-    f->whole = f->mesh;
-  else
-    dvi_mesh_destroy(&f->mesh);
+  dvi_mesh_destroy(&f->mesh);
   f->mesh = share;
   return true;
 }

@@ -104,35 +104,15 @@ bool dvi__read_probes(dvi_scene *scene, const dvi__tree *section)
 
 /* ---- making ---- */
 
-/* Return the cell of a share whose number in the whole mesh is given, or -1. */
-static int cell_of_number(const dvi_mesh *share, int64_t number)
-{
-  const int n = dvi_mesh_dimension(share);
-  const int64_t *numbers = dvi_mesh_share_numbers(share, n);
-  int64_t low = 0, high = dvi_mesh_count(share, n);
-  while (low < high) {
-    const int64_t middle = (low + high) / 2;
-    if (numbers[middle] < number)
-      low = middle + 1;
-    else
-      high = middle;
-  }
-  return low < dvi_mesh_count(share, n) && numbers[low] == number ? (int)low : -1;
-}
-
 /* Find the cell of a probe, which may be of another share, -1, and the weights of its vertices. */
 static bool find_cell(dvi_scene *scene, const struct dvi__probe *probe, int *cell, double *weight)
 {
-  const struct dvi__scene_field *f = scene->field;
-  const dvi_mesh *mesh = f->whole != NULL ? f->whole : f->mesh;
-  const dvi_status status = dvi_mesh_locate(mesh, 1, probe->point, cell, weight);
-  if (status != DVI_OK)
-    return dvi__complain(scene->complaint, status, probe->at->span, "%s", dvi_last_error());
-  if (*cell < 0)
+  const dvi_status status = dvi_field_locate(scene->field->field, probe->point, cell, weight);
+  if (status == DVI_BAD_ARGUMENT)
     return dvi__scene_refuse(scene, probe->at->span, "the probe '%s' is outside of the mesh",
                              probe->name);
-  if (f->whole != NULL) *cell = cell_of_number(f->mesh, *cell);
-  return true;
+  return status == DVI_OK ||
+         dvi__complain(scene->complaint, status, probe->at->span, "%s", dvi_last_error());
 }
 
 /* Return the number of a vertex among the unknowns, or -1. */
@@ -221,7 +201,6 @@ bool dvi__probes_make(dvi_scene *scene)
                               .user = is_integral ? (void *)probe->integral : probe};
   }
   dvi__heap_free(u);
-  dvi_mesh_destroy(&f->whole);
   scene->terms.invariants = list;
   scene->terms.invariant_count = f->probes;
   return good;

@@ -31,7 +31,6 @@ struct dvi__scene_field {
   bool is_grid;                       /* the mesh is one of boxes that were generated */
   dvi_mesh *drawn;                    /* that of a grid, once it is asked for */
   dvi_mesh *mesh;                     /* NULL for a grid that yee alone advances */
-  dvi_mesh *whole;                    /* that of a share, until probes have their places */
   const struct dvi_yee_ranks *ranks;  /* that share a grid. NULL for others */
   int dimension;
   dvi_star *star;
