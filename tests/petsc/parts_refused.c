@@ -32,7 +32,7 @@ static void refuse(const char *name, dvi_status status, const char *word)
   const int is_refused = dvi_mesh_read_divided(name, &options, &share, &division) == status &&
                          share == NULL && division == NULL;
   expect(is_refused, word, "refusal");
-  expect(strstr(dvi_last_error(), word) != NULL || strstr(dvi_last_error(), "whose sentence"), word,
+  expect(strstr(dvi_last_error(), word) != NULL || strstr(dvi_last_error(), "tells why"), word,
          "sentence");
   dvi_mesh_destroy(&share);
   dvi_division_destroy(&division);

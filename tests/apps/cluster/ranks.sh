@@ -129,6 +129,8 @@ unset OMPI_MCA_odls_base_sigkill_timeout
 alone 'MPI knows of 1'
 together 2 'kepler is none' kepler
 together 2 'leapfrog and midpoint alone, not verlet' wave.yaml --method verlet
+# The process that owns the stiffest cell speaks.
+together 1 'the step 1 is not below the bound' wave.yaml --h 1
 sed 's/exp(/sqrt(x - 0.5)*exp(/' wave.yaml >nan.yaml
 sed 's/0.9, 0.13/3, 4/' probes.yaml >outside.yaml
 together 2 'the start is not finite at vertex' nan.yaml # on one process, on which the others wait
