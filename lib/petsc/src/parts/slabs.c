@@ -47,6 +47,7 @@ dvi_status dvi__slabs_refuse(const dvi__slabs *file, const char *sentence, ...)
   char text[256];
   va_list arguments;
   va_start(arguments, sentence);
+  /* NOLINTNEXTLINE(clang-analyzer-valist.Uninitialized): va_start has begun it */
   (void)vsnprintf(text, sizeof text, sentence, arguments);
   va_end(arguments);
   return dvi__fail(DVI_BAD_FILE, "%.200s: %s", file->path, text);
