@@ -302,8 +302,8 @@ static int find_culprit(const rank_end *all)
 int ranks_end(int code)
 {
   if (module == NULL) return code;
-  const rank_end own = {.code = code,
-                        .is_echo = is_echo || strstr(dvi_last_error(), "sentence tells why") != NULL};
+  const rank_end own = {
+      .code = code, .is_echo = is_echo || strstr(dvi_last_error(), "sentence tells why") != NULL};
   rank_end *all = calloc((size_t)rank_count, sizeof *all);
   (void)fflush(stderr);
   (void)fflush(stdout);
