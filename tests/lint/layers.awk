@@ -52,7 +52,8 @@ BEGIN {
   sees["field/forms"] = "core num field/algebra field/mesh"
   sees["field/audit"] = "core num field/algebra field/mesh field/forms"
   sees["field/yee"] = "core num num/simd march field/algebra"
-  sees["field/model"] = "core num solve field/algebra field/mesh field/forms"
+  sees["field/pencil"] = "core field/algebra field/mesh"
+  sees["field/model"] = "core num solve field/algebra field/mesh field/forms field/pencil"
   sees["field/step"] = "core num march field/algebra field/mesh field/model"
   sees["field/avi"] = sees["field/step"] " field/forms field/step"
   sees["field/tents"] = sees["field/avi"]
@@ -64,7 +65,7 @@ BEGIN {
   sees["field/schroedinger"] = "core num solve march field/algebra field/space field/density"
   sees["field/multisymplectic"] = "core num march field/algebra"
   sees["field/moving"] = "core num field/mesh field/space"
-  sees["field/elastic"] = "core num field/algebra field/mesh"
+  sees["field/elastic"] = "core num field/algebra field/mesh field/pencil"
   sees["field/elastic_avi"] = sees["field/step"] " field/step field/elastic"
   sees["field/rotations"] = "core field/algebra"
   sees["field/regge"] = "core num solve field/algebra field/mesh"

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "expect.h"
 #include "modes.h"
 #include "support/field/generated.h"
 #include "support/meshes.h"
@@ -16,18 +17,6 @@
 enum { MOST = 12 };
 
 static const double pi = 3.14159265358979323846, roundoff = 1e-12;
-static int rank, ranks, failures;
-
-static void expect(int holds, const char *what, const char *where)
-{
-  int all = holds;
-  (void)MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
-  if (all) return;
-  failures++;
-  if (!holds)
-    (void)fprintf(stderr, "process %d of %d, %s: %s (%s)\n", rank, ranks, where, what,
-                  dvi_last_error());
-}
 
 /* ---- fields ---- */
 

@@ -5,10 +5,10 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "field/algebra/largest.h"
 #include "field/elastic/rigid.h"
 #include "field/elastic/system.h"
 #include "field/mesh/share.h"
+#include "field/pencil/on_share.h"
 
 enum { DEFAULT_COUNT = 6 };
 
@@ -30,66 +30,31 @@ static dvi_matrix view_diagonal(int64_t rows, const double *value)
 
 /* ---- the fastest one ---- */
 
-/* The unknowns among those of the whole mesh, and room for a component of all nodes. */
-typedef struct unknowns {
-  const dvi_elastic *elastic;
-  int64_t *number;
-  char *is_own;
-  double *component; /* [vertices] */
-} unknowns;
-
-static dvi_status refresh_unknowns(void *of, double *x)
+/* List the coordinates that are unknowns. */
+static dvi_status list_places(const dvi_elastic *e, int **place)
 {
-  const unknowns *u = of;
-  const dvi_elastic *e = u->elastic;
-  for (int i = 0; i < e->n && e->mesh->share != NULL; i++) {
-    for (int64_t v = 0; v < e->vertices; v++)
-      u->component[v] = e->unknown[v * e->n + i] >= 0 ? x[e->unknown[v * e->n + i]] : 0;
-    DVI_TRY(dvi__refresh(e->mesh, 0, u->component));
-    for (int64_t v = 0; v < e->vertices; v++)
-      if (e->unknown[v * e->n + i] >= 0) x[e->unknown[v * e->n + i]] = u->component[v];
-  }
-  return DVI_OK;
-}
-
-static dvi_status prepare_unknowns(const dvi_elastic *e, unknowns *u)
-{
-  *u = (unknowns){.elastic = e,
-                  .number = DVI_NEW(int64_t, e->unknowns),
-                  .is_own = DVI_NEW(char, e->unknowns),
-                  .component = DVI_NEW(double, e->vertices)};
-  if (!u->number || !u->is_own || !u->component)
-    return dvi__fail(DVI_NO_MEMORY, "elastic: no memory for a frequency");
-  for (int64_t k = 0; k < e->vertices * e->n; k++) {
-    const int at = e->unknown[k];
-    if (at < 0) continue;
-    u->number[at] = dvi__whole_number(e->mesh, 0, k / e->n) * e->n + k % e->n;
-    u->is_own[at] = (char)dvi__owns(e->mesh, 0, k / e->n);
-  }
+  *place = DVI_NEW(int, e->unknowns);
+  if (*place == NULL) return dvi__fail(DVI_NO_MEMORY, "elastic: no memory for a frequency");
+  for (int64_t k = 0; k < e->vertices * e->n; k++)
+    if (e->unknown[k] >= 0) (*place)[e->unknown[k]] = (int)k;
   return DVI_OK;
 }
 
 dvi_status dvi__solid_find_fastest(const dvi_elastic *e, const dvi__csr *K, const double *mass)
 {
   double bound = 0;
-  unknowns u;
+  int *place = NULL;
   const dvi_matrix stiffness = dvi__csr_view(K, 1), diagonal = view_diagonal(e->unknowns, mass);
   const dvi__pencil pencil = {.K = &stiffness, .M = &diagonal, .dimension = e->n};
   if (e->fastest > 0) return DVI_OK;
-  dvi_status status = dvi__agree(e->mesh, prepare_unknowns(e, &u));
-  const dvi__rows rows = {.total = e->whole_unknowns,
-                          .number = u.number,
-                          .is_own = u.is_own,
-                          .refresh = refresh_unknowns,
-                          .sum = dvi__rows_sum,
-                          .largest = dvi__rows_largest,
-                          .agree = dvi__rows_agree,
-                          .of = &u,
-                          .all = e->mesh};
-  if (status == DVI_OK) status = dvi__largest_eigenvalue(&pencil, &rows, &bound);
-  dvi__release(u.number);
-  dvi__release(u.is_own);
-  dvi__release(u.component);
+  dvi_status status = dvi__agree(e->mesh, list_places(e, &place));
+  const dvi__cell_unknowns unknowns = {.mesh = e->mesh,
+                                       .components = e->n,
+                                       .count = e->unknowns,
+                                       .total = e->whole_unknowns,
+                                       .place = place};
+  if (status == DVI_OK) status = dvi__largest_on_share(&pencil, &unknowns, &bound);
+  dvi__release(place);
   if (status == DVI_OK)
     ((dvi_elastic *)e)->fastest = sqrt(fmax(bound, 0)); /* the same in every thread */
   return status;

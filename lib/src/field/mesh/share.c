@@ -121,21 +121,6 @@ dvi_status dvi__locate_first(const dvi_mesh *mesh, const double *at, double *pla
   return DVI_OK;
 }
 
-dvi_status dvi__rows_sum(const void *mesh, dvi__accumulator *sum, double *value)
-{
-  return dvi__sum_of_all(mesh, sum, value);
-}
-
-dvi_status dvi__rows_largest(const void *mesh, double *value)
-{
-  return dvi__largest_of_all(mesh, 1, value);
-}
-
-dvi_status dvi__rows_agree(const void *mesh, dvi_status status)
-{
-  return dvi__agree(mesh, status);
-}
-
 dvi_status dvi__check_owned(const dvi_mesh *mesh, int k, int64_t count, const int *cell)
 {
   for (int64_t i = 0; i < count; i++)

@@ -73,12 +73,6 @@ dvi_status dvi__largest_of_all(const dvi_mesh *mesh, int count, double *number);
 dvi_status dvi__locate_first(const dvi_mesh *mesh, const double *at, double *place,
                              int64_t *number);
 
-/* dvi__sum_of_all, dvi__largest_of_all of one number, and dvi__agree, for callers that do not know
- * meshes. */
-dvi_status dvi__rows_sum(const void *mesh, dvi__accumulator *sum, double *value);
-dvi_status dvi__rows_largest(const void *mesh, double *value);
-dvi_status dvi__rows_agree(const void *mesh, dvi_status status);
-
 /* Refuse k-cells of other processes. */
 dvi_status dvi__check_owned(const dvi_mesh *mesh, int k, int64_t count, const int *cell);
 

@@ -4,9 +4,9 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "field/algebra/largest.h"
 #include "field/mesh/share.h"
 #include "field/model/spectrum.h"
+#include "field/pencil/on_share.h"
 
 /* With free components K is semidefinite. A shift below 0, of the size of the lowest eigenvalues,
  * makes it definite: an entry of the diagonal of K over that of M is about 4 n/h^2, and a length of
@@ -137,61 +137,19 @@ dvi_status dvi_field_modes(const dvi_field *field, const dvi_modes_options *opti
 
 /* ---- the fastest frequency ---- */
 
-/* The unknowns among those of the whole mesh, and room for a form. */
-typedef struct unknowns {
-  const dvi_field *field;
-  int64_t *number;
-  char *is_own;
-  double *form; /* [cells] */
-} unknowns;
-
-static dvi_status refresh_unknowns(void *of, double *x)
-{
-  const unknowns *u = of;
-  const dvi_field *f = u->field;
-  for (int64_t i = 0; i < f->unknowns; i++) u->form[f->unknown[i]] = x[i];
-  DVI_TRY(dvi__refresh(f->mesh, f->degree, u->form));
-  for (int64_t i = 0; i < f->unknowns; i++) x[i] = u->form[f->unknown[i]];
-  return DVI_OK;
-}
-
-static dvi_status prepare_unknowns(const dvi_field *f, unknowns *u)
-{
-  *u = (unknowns){.field = f,
-                  .number = DVI_NEW(int64_t, f->unknowns),
-                  .is_own = DVI_NEW(char, f->unknowns),
-                  .form = DVI_NEW(double, f->cells)};
-  if (!u->number || !u->is_own || !u->form)
-    return dvi__fail(DVI_NO_MEMORY, "field: no memory for a frequency");
-  for (int64_t i = 0; i < f->unknowns; i++) {
-    u->number[i] = dvi__whole_number(f->mesh, f->degree, f->unknown[i]);
-    u->is_own[i] = (char)dvi__owns(f->mesh, f->degree, f->unknown[i]);
-  }
-  return DVI_OK;
-}
-
 static dvi_status find_fastest(const dvi_field *field, double *bound)
 {
   dvi_matrix K, M;
-  unknowns u;
   DVI_TRY(dvi_field_matrix(field, DVI_FIELD_STIFFNESS, &K));
   DVI_TRY(dvi_field_matrix(field, DVI_FIELD_MASS, &M));
   const dvi__pencil pencil = {.K = &K, .M = &M, .dimension = field->mesh->n};
-  dvi_status status = dvi__agree(field->mesh, prepare_unknowns(field, &u));
-  const dvi__rows rows = {.total = field->whole_unknowns,
-                          .number = u.number,
-                          .is_own = u.is_own,
-                          .refresh = refresh_unknowns,
-                          .sum = dvi__rows_sum,
-                          .largest = dvi__rows_largest,
-                          .agree = dvi__rows_agree,
-                          .of = &u,
-                          .all = field->mesh};
-  if (status == DVI_OK) status = dvi__largest_eigenvalue(&pencil, &rows, bound);
-  dvi__release(u.number);
-  dvi__release(u.is_own);
-  dvi__release(u.form);
-  return status;
+  const dvi__cell_unknowns unknowns = {.mesh = field->mesh,
+                                       .degree = field->degree,
+                                       .components = 1,
+                                       .count = field->unknowns,
+                                       .total = field->whole_unknowns,
+                                       .place = field->unknown};
+  return dvi__largest_on_share(&pencil, &unknowns, bound);
 }
 
 dvi_status dvi_field_fastest(const dvi_field *field, double *omega)

@@ -225,7 +225,7 @@ static const double *integral_of_E(const dvi__leapfrog *l)
 static dvi_status start(void *self, const dvi_march_state *state)
 {
   dvi__leapfrog *l = self;
-  const dvi__leapfrog_place before = l->at;
+  const dvi__march_place before = l->at;
   l->at.t0 = l->at.t = state->t;
   l->at.n = 0;
   dvi_status status = dvi__agree(

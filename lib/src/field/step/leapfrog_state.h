@@ -4,15 +4,9 @@
 #define DVI_FIELD_STEP_LEAPFROG_STATE_H
 #include "field/algebra/conjugate.h"
 #include "field/step/observables.h"
+#include "field/step/saved.h"
 #include "field/step/sweep.h"
 #include "march/sections.h"
-
-/* What identifies a march in a file, and where it stands. */
-typedef struct dvi__leapfrog_place {
-  int64_t n;
-  uint64_t hash; /* of the coefficients */
-  double dt, t0, t;
-} dvi__leapfrog_place;
 
 /* What stars that are not diagonal need: the matrix M + dt/2 S of a step, M, and room. */
 typedef struct dvi__leapfrog_solver {
@@ -28,7 +22,7 @@ typedef struct dvi__leapfrog_solver {
 typedef struct dvi__leapfrog {
   const dvi_field *field;
   dvi__sweep sweep;
-  dvi__leapfrog_place at;
+  dvi__march_place at;
   double bound;
   int keeps_A; /* the field is a wave, A is wanted, or damping moves charge */
   int64_t numbers;

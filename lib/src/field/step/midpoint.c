@@ -18,18 +18,11 @@
 #include "field/step/observables.h"
 #include "field/step/saved.h"
 
-/* What identifies a march in a file, and where it stands. */
-typedef struct place {
-  int64_t n;
-  uint64_t hash; /* of the coefficients */
-  double dt, t0, t;
-} place;
-
 typedef struct midpoint {
   const dvi_field *field;
   dvi_matrix d;
   dvi__on_all solver;
-  place at;
+  dvi__march_place at;
   /* [cells] values and momenta of the form at t_n, and at t_{n-1}. Those of others are refreshed */
   double *q, *p, *q_before, *p_before;
   double *x, *middle, *force, *slope; /* [unknowns] */
@@ -292,51 +285,31 @@ static void facts(const void *self, dvi_march_facts *facts)
 
 enum { VERSION = 1, PIECES = 4 };
 
-static void find_pieces(const midpoint *m, dvi__piece piece[PIECES])
+static dvi__saved_march saved_of(const midpoint *m, dvi__piece piece[PIECES])
 {
   double *const forms[PIECES] = {m->q, m->p, m->q_before, m->p_before};
   for (int i = 0; i < PIECES; i++) piece[i] = (dvi__piece){0, m->field->cells, forms[i]};
+  return (dvi__saved_march){.method = "midpoint",
+                            .version = VERSION,
+                            .mesh = m->field->mesh,
+                            .at = (dvi__march_place *)&m->at,
+                            .pieces = PIECES,
+                            .piece = piece};
 }
 
 static dvi_status save(const void *self, dvi__sections_writer *writer)
 {
-  const midpoint *m = self;
   dvi__piece piece[PIECES];
-  find_pieces(m, piece);
-  dvi__section_open(writer, "midpoint", VERSION);
-  dvi__section_put(writer, &m->at, sizeof m->at);
-  dvi__section_open(writer, "forms", 1);
-  return dvi__pieces_put(m->field->mesh, PIECES, piece, writer);
-}
-
-/* Find what was saved, and refuse what another march has saved. */
-static dvi_status find_saved(const midpoint *m, const dvi__sections *sections, int64_t numbers,
-                             place *at, dvi__section *forms)
-{
-  dvi__section found;
-  DVI_TRY(dvi__section_find(sections, "midpoint", VERSION, sizeof *at, &found));
-  memcpy(at, found.content, sizeof *at);
-  if (at->hash != m->at.hash || at->dt != m->at.dt)
-    return dvi__fail(DVI_BAD_FILE,
-                     "march: %s is of another field, or of another step: it has dt = %.17g, and "
-                     "this march %.17g",
-                     sections->name, at->dt, m->at.dt);
-  return dvi__section_find(sections, "forms", 1, (size_t)numbers * sizeof(double), forms);
+  const dvi__saved_march march = saved_of(self, piece);
+  return dvi__saved_march_put(&march, writer);
 }
 
 static dvi_status load(void *self, const dvi__sections *sections)
 {
   midpoint *m = self;
-  const dvi_mesh *mesh = m->field->mesh;
   dvi__piece piece[PIECES];
-  dvi__section forms = {0};
-  place at;
-  find_pieces(m, piece);
-  const int64_t numbers = dvi__pieces_size(mesh, PIECES, piece);
-  DVI_TRY(dvi__agree(mesh, find_saved(m, sections, numbers, &at, &forms)));
-  DVI_TRY(dvi__check_same(mesh, sections->name, sections->size, sections->bytes));
-  m->at = at;
-  dvi__pieces_take(mesh, PIECES, piece, forms.content);
+  const dvi__saved_march march = saved_of(m, piece);
+  DVI_TRY(dvi__saved_march_take(&march, sections));
   m->is_lost = 0;
   return DVI_OK;
 }

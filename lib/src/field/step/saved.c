@@ -137,3 +137,41 @@ dvi_status dvi__check_same(const dvi_mesh *mesh, const char *name, size_t size,
                 ? DVI_OK
                 : dvi__fail(DVI_BAD_FILE, "march: %s is not the same on all processes", name));
 }
+
+/* ---- marches of equal steps ---- */
+
+dvi_status dvi__saved_march_put(const dvi__saved_march *march, dvi__sections_writer *writer)
+{
+  dvi__section_open(writer, march->method, march->version);
+  dvi__section_put(writer, march->at, sizeof *march->at);
+  dvi__section_open(writer, "forms", 1);
+  return dvi__pieces_put(march->mesh, march->pieces, march->piece, writer);
+}
+
+/* Find what was saved, and refuse what another march has saved. */
+static dvi_status find_saved(const dvi__saved_march *march, const dvi__sections *sections,
+                             dvi__march_place *at, dvi__section *forms)
+{
+  dvi__section found;
+  const size_t numbers = (size_t)dvi__pieces_size(march->mesh, march->pieces, march->piece);
+  DVI_TRY(dvi__section_find(sections, march->method, march->version, sizeof *at, &found));
+  memcpy(at, found.content, sizeof *at);
+  if (at->hash != march->at->hash || at->dt != march->at->dt)
+    return dvi__fail(DVI_BAD_FILE,
+                     "march: %s is of another field, or of another step: it has dt = %.17g, and "
+                     "this march %.17g",
+                     sections->name, at->dt, march->at->dt);
+  return dvi__section_find(sections, "forms", 1, numbers * sizeof(double), forms);
+}
+
+dvi_status dvi__saved_march_take(const dvi__saved_march *march, const dvi__sections *sections)
+{
+  dvi__section forms = {0};
+  dvi__march_place at;
+  const dvi_status found = dvi__agree(march->mesh, find_saved(march, sections, &at, &forms));
+  if (found != DVI_OK || forms.content == NULL) return found;
+  DVI_TRY(dvi__check_same(march->mesh, sections->name, sections->size, sections->bytes));
+  *march->at = at;
+  dvi__pieces_take(march->mesh, march->pieces, march->piece, forms.content);
+  return DVI_OK;
+}

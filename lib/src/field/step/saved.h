@@ -12,6 +12,30 @@ typedef struct dvi__piece {
   double *value;
 } dvi__piece;
 
+/* What identifies a march of equal steps in a file, and where it stands. */
+typedef struct dvi__march_place {
+  int64_t n;
+  uint64_t hash; /* of the coefficients */
+  double dt, t0, t;
+} dvi__march_place;
+
+/* All that is saved of a march of equal steps. */
+typedef struct dvi__saved_march {
+  const char *method; /* the name of its section */
+  uint32_t version;
+  const dvi_mesh *mesh;
+  dvi__march_place *at;
+  int pieces;
+  const dvi__piece *piece; /* [pieces] the section "forms" */
+} dvi__saved_march;
+
+/* Put the march of the whole mesh into a file, as dvi__march_kind has it. */
+dvi_status dvi__saved_march_put(const dvi__saved_march *march, dvi__sections_writer *writer);
+
+/* Replace place and pieces by those in a file. One of another field or step is refused, on all
+ * processes, and changes nothing. */
+dvi_status dvi__saved_march_take(const dvi__saved_march *march, const dvi__sections *sections);
+
 /* Return how many numbers of the whole mesh the pieces have together. */
 int64_t dvi__pieces_size(const dvi_mesh *mesh, int pieces, const dvi__piece *piece);
 
