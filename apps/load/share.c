@@ -14,6 +14,21 @@
 
 enum { RANKS_SHOWN = 16, HOW_SIZE = 64 };
 
+static const char *const implicit[] = {"midpoint", "imex"};
+
+enum { IMPLICIT = sizeof implicit / sizeof *implicit };
+
+/* Tell if shares of a scene's field march by a method. Those of waves have implicit ones. */
+static bool marches(const problem *scene, const char *method)
+{
+  const size_t length = strcspn(method, ":");
+  if (strcmp(method, "leapfrog") == 0) return true;
+  for (int i = 0; i < IMPLICIT; i++)
+    if (strlen(implicit[i]) == length && strncmp(method, implicit[i], length) == 0)
+      return dvi_scene_marches(scene->scene, method);
+  return false;
+}
+
 int share_check(const char *command, const problem *scene, const char *method, bool takes_all)
 {
   const bool is_solid = takes_all && scene->scene != NULL &&
@@ -25,17 +40,15 @@ int share_check(const char *command, const problem *scene, const char *method, b
                        takes_all ? " or of a solid" : "", scene->name);
   if (method == NULL) method = scene->method;
   if (takes_all && !is_solid && method != NULL && strcmp(method, "yee") == 0) return DONE;
-  /* shares of waves have midpoint, too */
   const bool is_wave = !is_solid && dvi_scene_marches(scene->scene, "midpoint");
   if (method != NULL &&
-      (is_solid ? dvi_scene_marches(scene->scene, method)
-                : strcmp(method, "leapfrog") == 0 || (is_wave && strcmp(method, "midpoint") == 0)))
+      (is_solid ? dvi_scene_marches(scene->scene, method) : marches(scene, method)))
     return DONE;
   return usage_error("%s: %d processes share %s alone, not %s; give --method %s, or leave mpirun "
                      "out",
                      command, ranks_count(),
                      is_solid    ? "avi and verlet"
-                     : is_wave   ? "leapfrog and midpoint"
+                     : is_wave   ? "leapfrog, midpoint and imex"
                      : takes_all ? "leapfrog and yee"
                                  : "leapfrog",
                      method != NULL ? method : "another method", is_solid ? "avi" : "leapfrog");

@@ -57,7 +57,8 @@ BEGIN {
   sees["field/step"] = "core num march field/algebra field/mesh field/model"
   sees["field/avi"] = sees["field/step"] " field/forms field/step"
   sees["field/tents"] = sees["field/avi"]
-  sees["field/method"] = sees["field/avi"] " field/avi field/tents"
+  sees["field/implicit"] = sees["field/step"] " field/step"
+  sees["field/method"] = sees["field/avi"] " field/avi field/tents field/implicit"
   sees["field/spectra"] = "core"
   sees["field/multiscale"] = "core num field/algebra"
   sees["field/space"] = "core num num/fft space field/algebra field/mesh field/multiscale"

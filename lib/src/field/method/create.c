@@ -4,10 +4,10 @@
 
 #include "core/status.h"
 #include "field/avi/march.h"
+#include "field/implicit/march.h"
 #include "field/mesh/share.h"
 #include "field/step/bound.h"
 #include "field/step/leapfrog.h"
-#include "field/step/midpoint.h"
 #include "field/tents/tents.h"
 
 /* A method, and whether its name fits a mesh. */
@@ -26,11 +26,12 @@ static const method methods[] = {
     {"yee", 1, dvi__leapfrog_create, NULL},
     {"avi", 0, dvi__avi_march_create, dvi__avi_march_stability},
     {"tents", 0, dvi__tents_march, dvi__tents_march_stability},
-    /* Whole meshes have it by the integrators of systems. */
+    /* Whole meshes have the rest by the integrators of systems. */
     {"midpoint", 0, dvi__midpoint_create, NULL},
+    {"imex", 0, dvi__imex_create, NULL},
 };
 
-enum { ALL = sizeof methods / sizeof *methods, METHODS = ALL - 1 };
+enum { ALL = sizeof methods / sizeof *methods, METHODS = 5 };
 
 const char *dvi_march_method_name(int i)
 {
@@ -41,7 +42,7 @@ const char *dvi_march_method_name(int i)
 
 static dvi_status check_field(const dvi_field *field, const method *found)
 {
-  if (field->potential.density != NULL && found->create != dvi__midpoint_create)
+  if (field->potential.density != NULL && found < methods + METHODS)
     return dvi__fail(DVI_UNSUPPORTED,
                      "march: the field has a potential, which marches do not take; verlet and the "
                      "other methods of dvi_field_system do");
@@ -60,7 +61,7 @@ static dvi_status find(const char *text, const method **found, const char **rest
   }
   return dvi__fail(DVI_BAD_OPTION,
                    "march: there is no method \"%.*s\"; there are leapfrog (also called yee and "
-                   "bossavit-kettunen), avi, tents, and midpoint for waves on shares",
+                   "bossavit-kettunen), avi, tents, and midpoint and imex for waves on shares",
                    (int)length, text);
 }
 
