@@ -14,7 +14,7 @@
 
 enum { RANKS_SHOWN = 16, HOW_SIZE = 64 };
 
-static const char *const implicit[] = {"midpoint", "imex"};
+static const char *const implicit[] = {"midpoint", "imex", "galerkin"};
 
 enum { IMPLICIT = sizeof implicit / sizeof *implicit };
 
@@ -48,7 +48,7 @@ int share_check(const char *command, const problem *scene, const char *method, b
                      "out",
                      command, ranks_count(),
                      is_solid    ? "avi and verlet"
-                     : is_wave   ? "leapfrog, midpoint and imex"
+                     : is_wave   ? "leapfrog, midpoint, imex and galerkin"
                      : takes_all ? "leapfrog and yee"
                                  : "leapfrog",
                      method != NULL ? method : "another method", is_solid ? "avi" : "leapfrog");

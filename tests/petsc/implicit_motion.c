@@ -197,6 +197,9 @@ void check_motions(const dvi_mesh *mesh, const char *partitioner, int is_long)
       {"midpoint", {.has_potential = 1}, 2e-13, 1e-2, 0},
       {"imex", {.is_fixed = 1}, 2e-13, 1e-13, 1},
       {"imex", {.is_fixed = 1, .has_potential = 1}, 2e-13, 0.2, 0},
+      {"galerkin:degree=1", {.has_potential = 1}, 2e-13, 1e-2, 1},
+      {"galerkin:degree=2", {.is_fixed = 1}, 2e-13, 1e-13, 0},
+      {"galerkin:degree=2", {.has_potential = 1}, 2e-13, 1e-2, 0},
   };
   for (size_t i = 0; i < sizeof motions / sizeof *motions; i++)
     if (is_long || !motions[i].is_long) check_motion(mesh, motions + i, partitioner);
@@ -258,6 +261,7 @@ void check_failures(void)
   expect(dvi_mesh_divide(mesh, NULL, &share, &division) == DVI_OK, "no division", "failures");
   check_failure(share, "midpoint");
   check_failure(share, "imex");
+  check_failure(share, "galerkin:degree=2");
   dvi_mesh_destroy(&share);
   dvi_mesh_destroy(&mesh);
   dvi_division_destroy(&division);
@@ -299,6 +303,7 @@ void check_orders(void)
   expect(dvi_mesh_divide(mesh, NULL, &share, &division) == DVI_OK, "no division", "orders");
   check_order(share, "midpoint", 4);
   check_order(share, "imex", 4);
+  check_order(share, "galerkin:degree=2", 16);
   dvi_mesh_destroy(&share);
   dvi_mesh_destroy(&mesh);
   dvi_division_destroy(&division);

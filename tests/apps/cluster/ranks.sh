@@ -126,7 +126,7 @@ says err '^dvi: run: signal 15 ended the run at t' 'a signal to mpirun'
 
 alone 'MPI knows of 1'
 together 2 'kepler is none' kepler
-together 2 'leapfrog, midpoint and imex alone, not verlet' wave.yaml --method verlet
+together 2 'leapfrog, midpoint, imex and galerkin alone, not verlet' wave.yaml --method verlet
 # The process that owns the stiffest cell speaks.
 together 1 'the step 1 is not below the bound' wave.yaml --h 1
 sed 's/exp(/sqrt(x - 0.5)*exp(/' wave.yaml >nan.yaml

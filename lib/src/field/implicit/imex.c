@@ -31,7 +31,7 @@ static void equations(const dvi__implicit_step *s, dvi__field_equations *equatio
 static dvi_status begin(dvi__implicit_step *s)
 {
   const dvi_field *f = s->field;
-  if (!s->knows_force) DVI_TRY(dvi__implicit_force(s, NULL, s->force[0]));
+  if (!s->knows_force) DVI_TRY(dvi__implicit_force(s, 1, NULL, s->force[0]));
   s->knows_force = 1;
   for (int64_t i = 0; i < f->unknowns; i++)
     s->x[i] = s->h * (s->p[f->unknown[i]] / f->mass.value[i]);
@@ -40,7 +40,7 @@ static dvi_status begin(dvi__implicit_step *s)
 
 static dvi_status end(dvi__implicit_step *s)
 {
-  return dvi__implicit_force(s, s->x, s->force[1]);
+  return dvi__implicit_force(s, 1, s->x, s->force[1]);
 }
 
 static void move(const dvi__implicit_step *s, int64_t i, double *q, double *p)
@@ -50,5 +50,10 @@ static void move(const dvi__implicit_step *s, int64_t i, double *q, double *p)
   s->force[0][i] = s->force[1][i];
 }
 
-const dvi__rule dvi__imex_rule = {
-    .name = "imex", .forces = 2, .equations = equations, .begin = begin, .end = end, .move = move};
+const dvi__rule dvi__imex_rule = {.name = "imex",
+                                  .numbers = 1,
+                                  .forces = 2,
+                                  .equations = equations,
+                                  .begin = begin,
+                                  .end = end,
+                                  .move = move};

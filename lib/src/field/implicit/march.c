@@ -7,7 +7,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "field/implicit/step.h"
+#include "field/implicit/options.h"
 #include "field/mesh/share.h"
 #include "field/step/observables.h"
 #include "field/step/saved.h"
@@ -329,7 +329,8 @@ static dvi_status make(implicit *m)
     .writes = writes, .is_lost = is_lost,                                                 \
   }
 
-static const dvi__march_kind midpoint = KIND("midpoint"), imex = KIND("imex");
+static const dvi__march_kind midpoint = KIND("midpoint"), imex = KIND("imex"),
+                             galerkin = KIND("galerkin");
 
 static dvi_status check_field(const dvi_field *field, const char *method)
 {
@@ -394,4 +395,12 @@ dvi_status dvi__imex_create(const dvi_field *field, const dvi__march_plan *plan,
 {
   const implicit wanted = {.kind = &imex, .rule = &dvi__imex_rule, .field = field};
   return create_plain(&wanted, plan, march);
+}
+
+dvi_status dvi__galerkin_create(const dvi_field *field, const dvi__march_plan *plan,
+                                dvi_march **march)
+{
+  implicit wanted = {.kind = &galerkin, .field = field};
+  DVI_TRY(dvi__galerkin_rule(plan->options, &wanted.rule));
+  return create(&wanted, plan, march);
 }

@@ -7,5 +7,7 @@
 dvi_status dvi__midpoint_create(const dvi_field *field, const dvi__march_plan *plan,
                                 dvi_march **march);
 dvi_status dvi__imex_create(const dvi_field *field, const dvi__march_plan *plan, dvi_march **march);
+dvi_status dvi__galerkin_create(const dvi_field *field, const dvi__march_plan *plan,
+                                dvi_march **march);
 
 #endif

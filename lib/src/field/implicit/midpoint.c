@@ -12,7 +12,7 @@ static dvi_status residual(void *of, const double *x, double *r)
   dvi__implicit_step *s = of;
   const dvi_field *f = s->field;
   const double h = s->h, *force = s->force[0];
-  DVI_TRY(dvi__implicit_force(s, x, s->force[0]));
+  DVI_TRY(dvi__implicit_force(s, 1, x, s->force[0]));
   for (int64_t i = 0; i < f->unknowns; i++)
     r[i] = f->mass.value[i] * x[i] - h / 2 * s->p[f->unknown[i]] + h * h / 4 * force[i];
   return DVI_OK;
@@ -21,7 +21,7 @@ static dvi_status residual(void *of, const double *x, double *r)
 static dvi_status diagonal(void *of, const double *x, double *d)
 {
   dvi__implicit_step *s = of;
-  return dvi__implicit_diagonal(s, s->h * s->h / 4, x, d);
+  return dvi__implicit_diagonal(s, s->h * s->h / 4, 1, x, d);
 }
 
 static void equations(const dvi__implicit_step *s, dvi__field_equations *equations)
@@ -41,7 +41,7 @@ static dvi_status begin(dvi__implicit_step *s)
 
 static dvi_status end(dvi__implicit_step *s)
 {
-  return dvi__implicit_force(s, s->x, s->force[0]);
+  return dvi__implicit_force(s, 1, s->x, s->force[0]);
 }
 
 static void move(const dvi__implicit_step *s, int64_t i, double *q, double *p)
@@ -52,6 +52,7 @@ static void move(const dvi__implicit_step *s, int64_t i, double *q, double *p)
 
 const dvi__rule dvi__midpoint_rule = {.name = "midpoint",
                                       .is_straight = 1,
+                                      .numbers = 1,
                                       .forces = 1,
                                       .equations = equations,
                                       .begin = begin,

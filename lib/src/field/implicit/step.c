@@ -24,19 +24,19 @@ static dvi_status check(const dvi_field *f, const double *derivative)
   return DVI_OK;
 }
 
-static void stand_at(dvi__implicit_step *s, const double *x)
+static void stand_at(dvi__implicit_step *s, double by, const double *x)
 {
   const dvi_field *f = s->field;
   for (int64_t i = 0; i < f->unknowns; i++)
-    s->place[i] = x != NULL ? s->q[f->unknown[i]] + x[i] : s->q[f->unknown[i]];
+    s->place[i] = x != NULL ? s->q[f->unknown[i]] + by * x[i] : s->q[f->unknown[i]];
 }
 
-dvi_status dvi__implicit_force(dvi__implicit_step *s, const double *x, double *force)
+dvi_status dvi__implicit_force(dvi__implicit_step *s, double by, const double *x, double *force)
 {
   const dvi_field *f = s->field;
   const dvi_matrix K = dvi__csr_view(&f->stiffness, 1);
   const dvi__density density = {.first = s->work};
-  stand_at(s, x);
+  stand_at(s, by, x);
   dvi_matrix_multiply(&K, 0, s->place, force);
   for (int64_t i = 0; i < f->unknowns; i++) force[i] -= f->load[i];
   if (f->potential.density == NULL) return DVI_OK;
@@ -46,11 +46,12 @@ dvi_status dvi__implicit_force(dvi__implicit_step *s, const double *x, double *f
   return check(f, s->work);
 }
 
-dvi_status dvi__implicit_diagonal(dvi__implicit_step *s, double factor, const double *x, double *d)
+dvi_status dvi__implicit_diagonal(dvi__implicit_step *s, double factor, double by, const double *x,
+                                  double *d)
 {
   const dvi_field *f = s->field;
   const dvi__density density = {.second = d};
-  stand_at(s, x);
+  stand_at(s, by, x);
   const int failed = dvi__field_density(f, s->place, 0, f->unknowns, &density);
   if (failed != 0) return dvi__implicit_refuse(failed);
   DVI_TRY(check(f, d));
@@ -101,7 +102,7 @@ void dvi__implicit_step_destroy(dvi__implicit_step **made)
 static dvi_status allocate(const dvi_field *f, const dvi__rule *rule, double h,
                            dvi__implicit_step **made)
 {
-  const int numbers = 1, arrays = numbers + 2 + rule->forces;
+  const int numbers = rule->numbers, arrays = numbers + 2 + rule->forces;
   dvi__implicit_step *s = *made = DVI_NEW(dvi__implicit_step, 1);
   if (s != NULL) s->x = DVI_NEW(double, arrays * f->unknowns);
   if (s == NULL || s->x == NULL) return dvi__fail(DVI_NO_MEMORY, "march: no memory for a step");

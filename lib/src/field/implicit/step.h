@@ -29,8 +29,9 @@ typedef struct dvi__implicit_state {
 struct dvi__rule {
   const char *name; /* of its section in files */
   int is_straight;  /* between the ends of a step, and not Hermite's cubic */
+  int numbers;      /* x of each unknown, 1 or 2 */
   int forces;       /* that it holds */
-  /* Fill in stiffness, residual and diagonal. */
+  /* Fill in what depends on the rule: the Jacobian, residual and diagonal. */
   void (*equations)(const dvi__implicit_step *s, dvi__field_equations *equations);
   dvi_status (*begin)(dvi__implicit_step *s); /* set x near a solution */
   dvi_status (*end)(dvi__implicit_step *s);   /* find the forces that the solution x leads to */
@@ -38,7 +39,7 @@ struct dvi__rule {
   void (*move)(const dvi__implicit_step *s, int64_t i, double *q, double *p);
 };
 
-extern const dvi__rule dvi__midpoint_rule, dvi__imex_rule;
+extern const dvi__rule dvi__midpoint_rule, dvi__imex_rule, dvi__gauss_rule;
 
 /* Prepare steps of a length. Called on all processes. On failure nothing is owned. */
 dvi_status dvi__implicit_step_create(const dvi_field *field, const dvi__rule *rule, double h,
@@ -57,10 +58,12 @@ dvi_status dvi__implicit_refuse(int failed);
 
 /* ---- for rules ---- */
 
-/* Set `force` [unknowns] to F at the places q + x, or at q if x is NULL, right for own unknowns. */
-dvi_status dvi__implicit_force(dvi__implicit_step *s, const double *x, double *force);
+/* Set `force` [unknowns] to F at the places q + by x, or at q if x is NULL, right for own unknowns.
+ */
+dvi_status dvi__implicit_force(dvi__implicit_step *s, double by, const double *x, double *force);
 
-/* Set d [unknowns] to factor w V_uu at q + x. */
-dvi_status dvi__implicit_diagonal(dvi__implicit_step *s, double factor, const double *x, double *d);
+/* Set d [unknowns] to factor w V_uu at q + by x. */
+dvi_status dvi__implicit_diagonal(dvi__implicit_step *s, double factor, double by, const double *x,
+                                  double *d);
 
 #endif

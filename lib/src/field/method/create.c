@@ -29,6 +29,7 @@ static const method methods[] = {
     /* Whole meshes have the rest by the integrators of systems. */
     {"midpoint", 0, dvi__midpoint_create, NULL},
     {"imex", 0, dvi__imex_create, NULL},
+    {"galerkin", 0, dvi__galerkin_create, NULL},
 };
 
 enum { ALL = sizeof methods / sizeof *methods, METHODS = 5 };
@@ -59,10 +60,11 @@ static dvi_status find(const char *text, const method **found, const char **rest
     if (strlen(methods[i].name) == length && strncmp(methods[i].name, text, length) == 0)
       return DVI_OK;
   }
-  return dvi__fail(DVI_BAD_OPTION,
-                   "march: there is no method \"%.*s\"; there are leapfrog (also called yee and "
-                   "bossavit-kettunen), avi, tents, and midpoint and imex for waves on shares",
-                   (int)length, text);
+  return dvi__fail(
+      DVI_BAD_OPTION,
+      "march: there is no method \"%.*s\"; there are leapfrog (also called yee and "
+      "bossavit-kettunen), avi, tents, and midpoint, imex and galerkin for waves on shares",
+      (int)length, text);
 }
 
 /* ---- create ---- */

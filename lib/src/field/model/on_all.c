@@ -37,6 +37,9 @@ dvi_status dvi__on_all_create(const dvi__field_equations *equations, dvi__on_all
                              .A = dvi__csr_view(&A, 1),
                              .components = is_definite || equations->diagonal ? 0 : f->components,
                              .component = f->component,
+                             .mass = equations->sine != 0 ? f->mass.value : NULL,
+                             .cosine = equations->cosine,
+                             .sine = equations->sine,
                              .residual = equations->residual,
                              .diagonal = equations->diagonal,
                              .of = equations->of};

@@ -8,6 +8,7 @@
 typedef struct dvi__field_equations {
   const dvi_field *field;
   double mass, stiffness; /* factors of M and K. Both 0: K alone */
+  double cosine, sine;    /* of equations of pairs, or both 0 */
   dvi_status (*residual)(void *of, const double *x, double *r);
   dvi_status (*diagonal)(void *of, const double *x, double *d);
   void *of;
