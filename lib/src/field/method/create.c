@@ -4,10 +4,10 @@
 
 #include "core/status.h"
 #include "field/avi/march.h"
+#include "field/implicit/midpoint.h"
 #include "field/mesh/share.h"
 #include "field/step/bound.h"
 #include "field/step/leapfrog.h"
-#include "field/step/midpoint.h"
 #include "field/tents/tents.h"
 
 /* A method, and whether its name fits a mesh. */

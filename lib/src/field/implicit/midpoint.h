@@ -1,6 +1,6 @@
-/* The implicit midpoint rule for waves on shares of a mesh, with potentials, too. */
-#ifndef DVI_FIELD_STEP_MIDPOINT_H
-#define DVI_FIELD_STEP_MIDPOINT_H
+/* The implicit midpoint rule for fields on shares of a mesh, with potentials, too. */
+#ifndef DVI_FIELD_IMPLICIT_MIDPOINT_H
+#define DVI_FIELD_IMPLICIT_MIDPOINT_H
 #include "field/step/bound.h"
 
 /* Create the march. DVI_UNSUPPORTED for a whole mesh, whose system has the same method. */
