@@ -36,6 +36,20 @@ paste -d , rows1.csv rows3.csv | awk -F , '
   $1 != $3 || ($2 - $4) ^ 2 > 1e-26 { exit 1 }
   END { if (NR != 6) exit 1 }' || fail "midpoint: $(cat rows3.csv), and of one $(cat rows1.csv)"
 
+# Their last step is shorter where h does not divide the time. The states of one process and of
+# several are other files.
+for count in 1 2; do
+  by $count kink.yaml --method midpoint --h 0.05 --t-end 0.53 --final --out end$count.csv \
+    --checkpoint from$count.state || fail "$count processes: no end by midpoint"
+done
+paste -d , end1.csv end2.csv | awk -F , '
+  NR == 2 && ($1 != 0.53 || $3 != 0.53 || ($2 - $4) ^ 2 > 1e-26) { exit 1 }' ||
+  fail "midpoint ends otherwise: $(cat end2.csv), and of one $(cat end1.csv)"
+together 1 'is the state of an integrator, and of no march' kink.yaml --method midpoint --h 0.05 \
+  --resume from1.state
+by 1 kink.yaml --method midpoint --h 0.05 --resume from2.state 2>err && fail "one goes on"
+says err 'it is the state of a march of a field' 'the state of two processes'
+
 # ---- checkpoints ----
 
 # goes_on N M SCENE OPTION...: half of a run by N, and the rest by M, are the whole one.

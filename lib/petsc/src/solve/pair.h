@@ -1,9 +1,11 @@
 /* Equations of pairs (field/model/elliptic.h), whose Jacobian is symmetric and indefinite. Minimal
  * residuals (Paige and Saunders 1975) solve them, with one multigrid cycle of A for each of the two
- * numbers. For eigenvalues 1 + k of A beside M those of the preconditioned Jacobian are +- |k +
- * cosine + i sine|/(1 + k), whose sizes are between the cosine of half the angle and 1, whatever the
- * mesh is (Mardal, Nilssen and Staff 2007, with the eigenvectors of the stages as in Butcher 1976).
- */
+ * numbers. For eigenvalues 1 + k of A beside M those of the preconditioned Jacobian are
+ *
+ *     +- |k + cosine + i sine| / (1 + k),
+ *
+ * whose sizes are between the cosine of half the angle and 1, whatever the mesh is (Mardal, Nilssen
+ * and Staff 2007, with the eigenvectors of the stages as in Butcher 1976). */
 #ifndef DVI_PETSC_PAIR_H
 #define DVI_PETSC_PAIR_H
 #include "field/model/elliptic.h"

@@ -13,9 +13,9 @@
 
 enum { CORRECTIONS = 25, ITERATIONS = 500 };
 
-/* What conjugate gradients, or minimal residuals, leave of a correction, in the norm of its energy, and of the first one.
- * Corrections end where the next one would be a rounding, or where they do not shrink any more, but
- * are this small a part of the unknowns. */
+/* What conjugate gradients, or minimal residuals, leave of a correction, in the norm of its energy,
+ * and of the first one. Corrections end where the next one would be a rounding, or where they do
+ * not shrink any more, but are this small a part of the unknowns. */
 static const double part_left = 1e-9, roundoff = 1e-17, settled = 1e-10;
 
 typedef struct solver {

@@ -1,4 +1,6 @@
-/* Marches of waves on shares of a mesh by implicit steps (field/implicit/step.h). */
+/* Marches of fields on shares of a mesh by implicit steps (field/implicit/step.h). All
+ * steps of a march are equal. What is asked for at a time between them is the end of a shorter step
+ * from the last one on, which is made beside the state. */
 #include "field/implicit/march.h"
 
 #include <float.h>
@@ -7,32 +9,34 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "field/implicit/options.h"
+#include "field/implicit/step.h"
 #include "field/mesh/share.h"
 #include "field/step/observables.h"
 #include "field/step/saved.h"
 
 typedef struct implicit {
   const dvi__march_kind *kind;
-  const dvi_field *field;
   const dvi__rule *rule;
+  const dvi_field *field;
   dvi_matrix d;
-  dvi__implicit_step *step;
+  dvi__implicit_step *step, *shorter; /* the latter is made where it is needed */
   dvi__march_place at;
   double *numbers;
-  dvi__implicit_state now, before; /* at t_n, and at t_{n-1} */
-  double *place;                   /* [unknowns] */
-  int is_lost;                     /* processes could not give each other their values */
+  dvi__implicit_state last, shown; /* at t_n, and at the march's time */
+  dvi__charge charge;
+  double *E, *spare; /* [cells] */
+  int is_lost;       /* processes could not give each other their values */
 } implicit;
 
-/* ---- a step ---- */
+/* ---- steps ---- */
 
 static double time_of(const implicit *m, int64_t n)
 {
   return m->at.t0 + (double)n * m->at.dt;
 }
 
-static dvi_status explain(const implicit *m, dvi_status status, const dvi__elliptic_report *report)
+static dvi_status explain(const dvi__implicit_step *s, const implicit *m, dvi_status status,
+                          const dvi__elliptic_report *report)
 {
   if (status == DVI_NOT_CONVERGED)
     (void)dvi__fail(status,
@@ -43,35 +47,91 @@ static dvi_status explain(const implicit *m, dvi_status status, const dvi__ellip
   return dvi__fail_in(status,
                       "march: %s: step %lld from t = %.9g with h = %.6g failed; the state is "
                       "unchanged, try a smaller step",
-                      m->kind->name, (long long)m->at.n + 1, time_of(m, m->at.n), m->at.dt);
+                      m->kind->name, (long long)m->at.n + 1, m->last.t, s->h);
 }
 
-/* The new state takes the place of the one before the last. */
+/* Set what is shown to the end of a step from t_n on. */
+static dvi_status take(implicit *m, dvi__implicit_step *s)
+{
+  dvi__elliptic_report report;
+  const dvi_status status = dvi__implicit_take(s, &m->last, &m->shown, &m->is_lost, &report);
+  return status == DVI_OK || m->is_lost ? status : explain(s, m, status, &report);
+}
+
+static void copy(const implicit *m, const dvi__implicit_state *from, dvi__implicit_state *to)
+{
+  const dvi_field *f = m->field;
+  memcpy(to->q, from->q, (size_t)f->cells * sizeof *to->q);
+  memcpy(to->p, from->p, (size_t)f->cells * sizeof *to->p);
+  memcpy(to->delivered, from->delivered, (size_t)f->currents * sizeof *to->delivered);
+  to->t = from->t;
+}
+
 static dvi_status step(implicit *m)
 {
-  const dvi__implicit_state next = m->before;
-  dvi__elliptic_report report;
-  const dvi_status status = dvi__implicit_take(m->step, &m->now, &next, &m->is_lost, &report);
-  if (status != DVI_OK) return m->is_lost ? status : explain(m, status, &report);
-  m->before = m->now;
-  m->now = next;
-  m->at.n++;
+  DVI_TRY(take(m, m->step));
+  m->at.t = m->shown.t = time_of(m, ++m->at.n);
+  copy(m, &m->shown, &m->last);
   return DVI_OK;
 }
 
-/* The march stands in the last step: t_{n-1} < t <= t_n. */
+/* Show the end of a step of another length. */
+static dvi_status step_aside(implicit *m, double h)
+{
+  if (m->shorter != NULL && m->shorter->h != h) dvi__implicit_step_destroy(&m->shorter);
+  if (m->shorter == NULL) DVI_TRY(dvi__implicit_step_create(m->field, m->rule, h, &m->shorter));
+  m->shorter->knows_force = 0;
+  return take(m, m->shorter);
+}
+
 static dvi_status advance(void *self, double t)
 {
   implicit *m = self;
   const double rounding = 8 * DBL_EPSILON * fmax(fabs(t), fabs(m->at.t0));
-  while (time_of(m, m->at.n) < t - rounding) {
-    const dvi_status status = step(m);
-    if (status == DVI_OK) continue;
-    m->at.t = fmax(m->at.t, time_of(m, m->at.n));
-    return status;
-  }
-  m->at.t = t;
+  while (time_of(m, m->at.n + 1) <= t + rounding) DVI_TRY(step(m));
+  if (t > m->last.t + rounding)
+    DVI_TRY(step_aside(m, t - m->last.t));
+  else
+    copy(m, &m->last, &m->shown);
+  m->at.t = m->shown.t = t;
   return DVI_OK;
+}
+
+/* ---- a start ---- */
+
+static void fill(const implicit *m, const dvi_march_state *state, dvi__implicit_state *first)
+{
+  const dvi_field *f = m->field;
+  memcpy(first->q, f->fixed, (size_t)f->cells * sizeof *first->q);
+  memset(first->p, 0, (size_t)f->cells * sizeof *first->p);
+  memset(first->delivered, 0, (size_t)f->currents * sizeof *first->delivered);
+  for (int64_t i = 0; i < f->unknowns; i++) {
+    const int c = f->unknown[i];
+    if (state->A != NULL) first->q[c] = state->A[c];
+    if (state->E != NULL) first->p[c] = -f->mass.value[i] * state->E[c];
+  }
+  first->t = state->t;
+}
+
+/* Give E. Of others' cells the mass may lack a part here. */
+static double E_at(const implicit *m, int64_t cell)
+{
+  const int i = m->field->number[cell];
+  return i < 0 ? 0 : -m->shown.p[cell] / m->field->mass.value[i];
+}
+
+static const double *find_E(const implicit *m)
+{
+  for (int64_t c = 0; c < m->field->cells; c++) m->E[c] = E_at(m, c);
+  return m->E;
+}
+
+/* Give the integral of E, up to a constant, or NULL without losses that move charge. */
+static const double *integral_of_E(const implicit *m)
+{
+  if (!m->field->is_damped) return NULL;
+  for (int64_t c = 0; c < m->field->cells; c++) m->spare[c] = -m->shown.q[c];
+  return m->spare;
 }
 
 static dvi_status start(void *self, const dvi_march_state *state)
@@ -84,18 +144,12 @@ static dvi_status start(void *self, const dvi_march_state *state)
   m->at.t0 = m->at.t = state->t;
   m->at.n = 0;
   m->step->knows_force = 0;
-  memcpy(m->now.q, f->fixed, (size_t)f->cells * sizeof *m->now.q);
-  memset(m->now.p, 0, (size_t)f->cells * sizeof *m->now.p);
-  for (int64_t i = 0; i < f->unknowns; i++) {
-    const int c = f->unknown[i];
-    if (state->A != NULL) m->now.q[c] = state->A[c];
-    if (state->E != NULL) m->now.p[c] = -f->mass.value[i] * state->E[c];
-  }
-  dvi_status status = dvi__refresh(f->mesh, 0, m->now.q);
-  if (status == DVI_OK) status = dvi__refresh(f->mesh, 0, m->now.p);
-  memcpy(m->before.q, m->now.q, (size_t)f->cells * sizeof *m->now.q);
-  memcpy(m->before.p, m->now.p, (size_t)f->cells * sizeof *m->now.p);
+  fill(m, state, &m->last);
+  dvi_status status = dvi__refresh(f->mesh, f->degree, m->last.q);
+  if (status == DVI_OK) status = dvi__refresh(f->mesh, f->degree, m->last.p);
   m->is_lost = status != DVI_OK;
+  copy(m, &m->last, &m->shown);
+  if (status == DVI_OK) dvi__charge_start(&m->charge, find_E(m), integral_of_E(m));
   return status;
 }
 
@@ -112,60 +166,11 @@ static int64_t size(const void *self, dvi_march_form form)
   return form == DVI_FORM_B ? m->d.rows : m->field->cells;
 }
 
-/* Return the part of the last step that is left. */
-static double left_of(const implicit *m)
-{
-  const double left = (time_of(m, m->at.n) - m->at.t) / m->at.dt;
-  return left > 1e-12 ? left : 0;
-}
-
-/* How the velocities at the ends of the last step differ from its mean, times h. */
-static void find_bends(const implicit *m, int64_t cell, double *first, double *last)
-{
-  const int i = m->field->number[cell];
-  *first = *last = 0;
-  if (i < 0 || m->rule->is_straight) return;
-  const double mean = m->now.q[cell] - m->before.q[cell], per = m->at.dt / m->field->mass.value[i];
-  *first = per * m->before.p[cell] - mean;
-  *last = per * m->now.p[cell] - mean;
-}
-
-static double A_at(const implicit *m, int64_t cell)
-{
-  const double left = left_of(m), gone = 1 - left;
-  double first, last;
-  if (left == 0) return m->now.q[cell];
-  find_bends(m, cell, &first, &last);
-  return m->now.q[cell] - left * (m->now.q[cell] - m->before.q[cell]) +
-         left * gone * (left * first - gone * last);
-}
-
-/* Of a straight line the momenta are straight, too. */
-static double momentum_at(const implicit *m, int64_t cell, double mass)
-{
-  const double left = left_of(m), gone = 1 - left;
-  double first, last;
-  if (left == 0) return m->now.p[cell];
-  if (m->rule->is_straight) return m->now.p[cell] - left * (m->now.p[cell] - m->before.p[cell]);
-  find_bends(m, cell, &first, &last);
-  return mass / m->at.dt *
-         (m->now.q[cell] - m->before.q[cell] + left * (left - 2 * gone) * first +
-          gone * (gone - 2 * left) * last);
-}
-
-static double E_at(const implicit *m, int64_t cell)
-{
-  const int i = m->field->number[cell];
-  if (i < 0) return 0;
-  const double mass = m->field->mass.value[i];
-  return -momentum_at(m, cell, mass) / mass;
-}
-
-static double B_at(const implicit *m, int64_t edge)
+static double B_at(const implicit *m, int64_t cell)
 {
   double sum = 0;
-  for (int64_t e = dvi__first_entry(&m->d, edge); e < dvi__first_entry(&m->d, edge + 1); e++)
-    sum += m->d.sign[e] * A_at(m, m->d.column[e]);
+  for (int64_t e = dvi__first_entry(&m->d, cell); e < dvi__first_entry(&m->d, cell + 1); e++)
+    sum += m->d.sign[e] * m->shown.q[m->d.column[e]];
   return sum;
 }
 
@@ -175,46 +180,64 @@ static dvi_status sample(const void *self, dvi_march_form form, int64_t count, c
   const implicit *m = self;
   for (int64_t i = 0; i < count; i++) {
     const int64_t c = cell != NULL ? cell[i] : i;
-    values[i] = form == DVI_FORM_A ? A_at(m, c) : form == DVI_FORM_E ? E_at(m, c) : B_at(m, c);
+    values[i] = form == DVI_FORM_A ? m->shown.q[c] : form == DVI_FORM_E ? E_at(m, c) : B_at(m, c);
   }
   return DVI_OK;
 }
 
-/* Add w V at t_n, of own unknowns. */
+/* Take E of others' cells from them. */
+static dvi_status show(const void *self, dvi_march_form form, int64_t count, const int *cell,
+                       double *values)
+{
+  const implicit *m = self;
+  const dvi_field *f = m->field;
+  if (form == DVI_FORM_E && cell != NULL)
+    DVI_TRY(dvi__check_owned(f->mesh, f->degree, count, cell));
+  DVI_TRY(sample(self, form, count, cell, values));
+  if (form != DVI_FORM_E || cell != NULL) return DVI_OK;
+  return dvi__refresh(f->mesh, f->degree, values);
+}
+
+/* Add w V of own unknowns. */
 static dvi_status add_density(const implicit *m, dvi__block_sum *sum)
 {
   const dvi_field *f = m->field;
   if (f->potential.density == NULL) return DVI_OK;
-  for (int64_t i = 0; i < f->unknowns; i++) m->place[i] = m->now.q[f->unknown[i]];
+  for (int64_t i = 0; i < f->unknowns; i++) m->spare[i] = m->shown.q[f->unknown[i]];
   for (int64_t i = 0; i < f->unknowns; i++) {
     double value;
-    if (!dvi__owns(f->mesh, 0, f->unknown[i])) continue;
-    const int failed = dvi__field_density(f, m->place, i, i + 1, &(dvi__density){.sum = &value});
+    if (!dvi__owns(f->mesh, f->degree, f->unknown[i])) continue;
+    const int failed = dvi__field_density(f, m->spare, i, i + 1, &(dvi__density){.sum = &value});
     if (failed != 0) return dvi__implicit_refuse(failed);
     dvi__block_sum_add(sum, value);
   }
   return DVI_OK;
 }
 
-/* p.M^-1 p/2 + q.(K q/2 - load) + the sum of w V at t_n, and the energy of the fixed values. On the
- * line between the ends of a step, stiff modes have less. */
+/* p.M^-1 p/2 + q.(K q/2 - load) + the sum of w V, and the energy of the fixed values. */
 static dvi_status energy(const void *self, double *value)
 {
   const implicit *m = self;
   const dvi_field *f = m->field;
+  const double *q = m->shown.q, *p = m->shown.p;
   dvi__block_sum sum = {.count = 0};
   for (int64_t i = 0; i < f->unknowns; i++) {
     const int c = f->unknown[i];
-    if (!dvi__owns(f->mesh, 0, c)) continue;
-    const double v = m->now.p[c] / f->mass.value[i],
-                 half = 0.5 * dvi__field_row(f, &f->stiffness, i, m->now.q);
-    dvi__block_sum_add(&sum, 0.5 * m->now.p[c] * v);
-    dvi__block_sum_add(&sum, m->now.q[c] * (half - f->load[i]));
+    if (!dvi__owns(f->mesh, f->degree, c)) continue;
+    const double v = p[c] / f->mass.value[i], half = 0.5 * dvi__field_row(f, &f->stiffness, i, q);
+    dvi__block_sum_add(&sum, 0.5 * p[c] * v);
+    dvi__block_sum_add(&sum, q[c] * (half - f->load[i]));
   }
   DVI_TRY(dvi__agree(f->mesh, add_density(m, &sum)));
   DVI_TRY(dvi__sum_of_all(f->mesh, dvi__block_sum_end(&sum), value));
   *value += f->rest;
   return DVI_OK;
+}
+
+static dvi_status charge_error(const void *self, double *error)
+{
+  const implicit *m = self;
+  return dvi__charge_error(&m->charge, find_E(m), integral_of_E(m), error);
 }
 
 static int observables(const void *self)
@@ -229,7 +252,8 @@ static const char *observable(const void *self, int i)
 
 static dvi_status observe(const void *self, int i, double *value)
 {
-  const dvi__observed march = {.sample = sample, .energy = energy, .of = self};
+  const dvi__observed march = {
+      .sample = sample, .energy = energy, .charge_error = charge_error, .of = self};
   return dvi__field_observe(((const implicit *)self)->field, &march, i, value);
 }
 
@@ -240,20 +264,24 @@ static void facts(const void *self, dvi_march_facts *facts)
                              .longest = m->at.dt,
                              .bound = (double)INFINITY,
                              .steps = m->at.n,
-                             .updates = m->at.n * dvi__whole_count(m->field->mesh, 1)};
+                             .updates = m->at.n *
+                                        dvi__whole_count(m->field->mesh, m->field->degree + 1)};
 }
 
 /* ---- files ---- */
 
-enum { VERSION = 1, PIECES = 4 };
+enum { VERSION = 2, PIECES = 6 };
 
 static dvi__saved_march saved_of(const implicit *m, dvi__piece piece[PIECES])
 {
-  double *const forms[PIECES] = {m->now.q, m->now.p, m->before.q, m->before.p};
-  for (int i = 0; i < PIECES; i++) piece[i] = (dvi__piece){0, m->field->cells, forms[i]};
+  const dvi_field *f = m->field;
+  double *const forms[] = {m->last.q, m->last.p, m->shown.q, m->shown.p};
+  for (int i = 0; i < 4; i++) piece[i] = (dvi__piece){f->degree, f->cells, forms[i]};
+  piece[4] = (dvi__piece){-1, 2 * (int64_t)f->currents, m->last.delivered};
+  piece[5] = (dvi__piece){f->degree - 1, dvi__charge_numbers(f) - f->currents, m->charge.start};
   return (dvi__saved_march){.method = m->rule->name,
                             .version = VERSION,
-                            .mesh = m->field->mesh,
+                            .mesh = f->mesh,
                             .at = (dvi__march_place *)&m->at,
                             .pieces = PIECES,
                             .piece = piece};
@@ -272,6 +300,8 @@ static dvi_status load(void *self, const dvi__sections *sections)
   dvi__piece piece[PIECES];
   const dvi__saved_march march = saved_of(m, piece);
   DVI_TRY(dvi__saved_march_take(&march, sections));
+  m->last.t = time_of(m, m->at.n);
+  m->shown.t = m->at.t;
   m->is_lost = m->step->knows_force = 0;
   return DVI_OK;
 }
@@ -298,19 +328,24 @@ static void destroy(void *self)
   implicit *m = self;
   if (m == NULL) return;
   dvi__implicit_step_destroy(&m->step);
+  dvi__implicit_step_destroy(&m->shorter);
+  dvi__charge_clear(&m->charge);
   dvi__release(m->numbers);
   dvi__release(m);
 }
 
+/* Lay the states out in one block. */
 static dvi_status make_own(implicit *m)
 {
   const dvi_field *f = m->field;
-  double **const forms[] = {&m->now.q, &m->now.p, &m->before.q, &m->before.p, &m->place};
-  DVI_TRY(dvi_mesh_incidence(f->mesh, 0, &m->d));
-  m->numbers = DVI_NEW(double, 4 * f->cells + f->unknowns);
+  double **const forms[] = {&m->last.q, &m->last.p, &m->shown.q, &m->shown.p, &m->E, &m->spare};
+  DVI_TRY(dvi_mesh_incidence(f->mesh, f->degree, &m->d));
+  m->numbers = DVI_NEW(double, 6 * f->cells + f->currents + dvi__charge_numbers(f));
   if (m->numbers == NULL) return dvi__fail(DVI_NO_MEMORY, "march: no memory for a state");
-  for (int i = 0; i < 5; i++) *forms[i] = m->numbers + i * f->cells;
-  return DVI_OK;
+  for (int i = 0; i < 6; i++) *forms[i] = m->numbers + i * f->cells;
+  m->last.delivered = m->numbers + 6 * f->cells;
+  m->shown.delivered = m->last.delivered + f->currents;
+  return dvi__charge_create(f, m->shown.delivered, &m->charge);
 }
 
 static dvi_status make(implicit *m)
@@ -324,83 +359,33 @@ static dvi_status make(implicit *m)
 #define KIND(NAME)                                                                        \
   {                                                                                       \
     .name = (NAME), .destroy = destroy, .start = start, .advance = advance, .time = time, \
-    .size = size, .sample = sample, .observables = observables, .observable = observable, \
+    .size = size, .sample = show, .observables = observables, .observable = observable,   \
     .observe = observe, .facts = facts, .save = save, .load = load, .agree = agree,       \
     .writes = writes, .is_lost = is_lost,                                                 \
   }
 
-static const dvi__march_kind midpoint = KIND("midpoint"), imex = KIND("imex"),
-                             galerkin = KIND("galerkin");
+static const dvi__march_kind kinds[] = {[DVI__IMPLICIT_MIDPOINT] = KIND("midpoint"),
+                                        [DVI__IMPLICIT_IMEX] = KIND("imex"),
+                                        [DVI__IMPLICIT_GALERKIN] = KIND("galerkin")};
 
-static dvi_status check_field(const dvi_field *field, const char *method)
+dvi_status dvi__implicit_create(const dvi_field *field, const dvi__implicit_plan *plan,
+                                dvi_march **march)
 {
-  if (field->mesh->share == NULL)
-    return dvi__fail(DVI_UNSUPPORTED,
-                     "march: %s is a march of shares (dvi_mesh_cut); a whole mesh has it by "
-                     "dvi_field_system",
-                     method);
-  if (!field->is_wave)
-    return dvi__fail(DVI_UNSUPPORTED,
-                     "march: %s on shares is for waves, and this field is Maxwell's: take leapfrog",
-                     method);
-  return DVI_OK;
-}
-
-/* Every step is stable. Without one, a part of leapfrog's bound is taken. */
-static dvi_status choose_step(const dvi_field *field, const dvi__march_plan *plan, double *dt)
-{
-  double bound;
-  *dt = plan->step;
-  return plan->step > 0 ? DVI_OK : dvi__choose_step(field, plan, dt, &bound);
-}
-
-static dvi_status create(const implicit *wanted, const dvi__march_plan *plan, dvi_march **march)
-{
-  const dvi_mesh *mesh = wanted->field->mesh;
-  double dt;
-  DVI_TRY(check_field(wanted->field, wanted->kind->name));
-  DVI_TRY(choose_step(wanted->field, plan, &dt));
   implicit *m = DVI_NEW(implicit, 1);
-  dvi_status status = dvi__agree(mesh,
+  dvi_status status = dvi__agree(field->mesh,
                                  m != NULL ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "march: no memory"));
   if (status == DVI_OK) {
-    *m = *wanted;
-    m->at.dt = dt;
+    m->kind = kinds + plan->method;
+    m->rule = plan->rule;
+    m->field = field;
+    m->at.dt = plan->dt;
     status = make(m);
   }
   if (status != DVI_OK) {
     destroy(m);
     return status;
   }
-  status = dvi__agree(mesh, dvi__march_wrap(m->kind, m, march));
+  status = dvi__agree(field->mesh, dvi__march_wrap(m->kind, m, march));
   if (status != DVI_OK) dvi_march_destroy(march);
   return status;
-}
-
-static dvi_status create_plain(const implicit *wanted, const dvi__march_plan *plan,
-                               dvi_march **march)
-{
-  DVI_TRY(dvi__refuse_options(wanted->kind->name, plan));
-  return create(wanted, plan, march);
-}
-
-dvi_status dvi__midpoint_create(const dvi_field *field, const dvi__march_plan *plan,
-                                dvi_march **march)
-{
-  const implicit wanted = {.kind = &midpoint, .rule = &dvi__midpoint_rule, .field = field};
-  return create_plain(&wanted, plan, march);
-}
-
-dvi_status dvi__imex_create(const dvi_field *field, const dvi__march_plan *plan, dvi_march **march)
-{
-  const implicit wanted = {.kind = &imex, .rule = &dvi__imex_rule, .field = field};
-  return create_plain(&wanted, plan, march);
-}
-
-dvi_status dvi__galerkin_create(const dvi_field *field, const dvi__march_plan *plan,
-                                dvi_march **march)
-{
-  implicit wanted = {.kind = &galerkin, .field = field};
-  DVI_TRY(dvi__galerkin_rule(plan->options, &wanted.rule));
-  return create(&wanted, plan, march);
 }

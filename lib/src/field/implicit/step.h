@@ -1,10 +1,12 @@
-/* Steps on shares of a mesh whose equations all processes solve together (field/model/on_all.h). */
+/* Steps on shares of a mesh whose equations all processes solve together (field/model/on_all.h).
+ * With the potential V, the load and currents J of a field they have forces
+ *
+ *     F(q) = K q - load + w V_u(q). */
 #ifndef DVI_FIELD_IMPLICIT_STEP_H
 #define DVI_FIELD_IMPLICIT_STEP_H
 #include "field/model/on_all.h"
 
-/* Forces F = K q - load + w V_u that a rule holds at a time. */
-enum { DVI__FORCES = 2 };
+enum { DVI__FORCES = 2 }; /* that a rule holds at a time */
 
 typedef struct dvi__rule dvi__rule;
 
@@ -13,28 +15,34 @@ typedef struct dvi__implicit_step {
   const dvi__rule *rule;
   double h;
   dvi__on_all solver;
-  const double *q, *p;        /* [cells] the start */
-  double *x;                  /* [numbers*unknowns] what the equations are solved for */
-  double *place, *work;       /* [unknowns] */
-  double *force[DVI__FORCES]; /* [unknowns] */
-  int knows_force;            /* the first force is that at the start, of the last step's end */
+  double t;                     /* of the start */
+  const double *q, *p;          /* [cells] the start */
+  double signal[DVI__CURRENTS]; /* of currents, in this step */
+  double *x;                    /* [numbers*unknowns] what the equations are solved for */
+  double *place, *work;         /* [unknowns] */
+  double *force[DVI__FORCES];   /* [unknowns] */
+  double *loss;                 /* [unknowns] the diagonal of S, or NULL without one */
+  int knows_force;              /* the first force is that at the start, of the last step's end */
 } dvi__implicit_step;
 
 /* A state at a time, of cells. */
 typedef struct dvi__implicit_state {
-  double *q, *p; /* [cells] the form, and its momentum. Those of others are refreshed */
+  double t;
+  double *q, *p;     /* [cells] the form, and its momentum. Those of others are refreshed */
+  double *delivered; /* [currents] integrals of the signals since the start */
 } dvi__implicit_state;
 
-/* How a step is taken. `begin` and `end` may fail on one process alone. */
+/* How a step is taken. */
 struct dvi__rule {
   const char *name; /* of its section in files */
-  int is_straight;  /* between the ends of a step, and not Hermite's cubic */
   int numbers;      /* x of each unknown, 1 or 2 */
   int forces;       /* that it holds */
   /* Fill in what depends on the rule: the Jacobian, residual and diagonal. */
   void (*equations)(const dvi__implicit_step *s, dvi__field_equations *equations);
   dvi_status (*begin)(dvi__implicit_step *s); /* set x near a solution */
-  dvi_status (*end)(dvi__implicit_step *s);   /* find the forces that the solution x leads to */
+  /* Find what `move` needs beside x and the last residual's forces. NULL for nothing. Both may fail
+   * on one process alone. */
+  dvi_status (*end)(dvi__implicit_step *s);
   /* Move q and p of the unknown i. */
   void (*move)(const dvi__implicit_step *s, int64_t i, double *q, double *p);
 };
@@ -46,12 +54,11 @@ dvi_status dvi__implicit_step_create(const dvi_field *field, const dvi__rule *ru
                                      dvi__implicit_step **made);
 void dvi__implicit_step_destroy(dvi__implicit_step **made);
 
-/* Make a step to another state. Steps begin where the last one ended, unless knows_force is 0. On
- * failure `to` stays as it was, but where processes could not give each other their values, which
- * sets *is_lost. The report is that of the solver. */
+/* Make a step. It begins where the last one ended, unless knows_force is 0. On failure `to` stays
+ * as it was, but where processes could not give each other their values, which sets *is_lost. The
+ * report is that of the solver. */
 dvi_status dvi__implicit_take(dvi__implicit_step *step, const dvi__implicit_state *from,
-                              const dvi__implicit_state *to, int *is_lost,
-                              dvi__elliptic_report *report);
+                              dvi__implicit_state *to, int *is_lost, dvi__elliptic_report *report);
 
 /* Refuse what the potential returned. */
 dvi_status dvi__implicit_refuse(int failed);

@@ -4,7 +4,7 @@
 
 #include "core/status.h"
 #include "field/avi/march.h"
-#include "field/implicit/march.h"
+#include "field/implicit/methods.h"
 #include "field/mesh/share.h"
 #include "field/step/bound.h"
 #include "field/step/leapfrog.h"

@@ -46,7 +46,8 @@ typedef struct dvi__elliptic_report {
  */
 typedef struct dvi_ranks_solver {
   dvi_status (*create)(const dvi__elliptic *equations, void *user, void **solver);
-  /* Solve, from x [unknowns] on, to roundoff. The user's ranks are those of dvi_ranks.
+  /* Solve, from x [unknowns] on, to roundoff. The user's ranks are those of dvi_ranks. The last
+   * call of `residual` is that of the solution.
    * DVI_NOT_CONVERGED without a sentence, which is the caller's, and the status of a function that
    * failed. x is unchanged then. All processes have the same result. */
   dvi_status (*solve)(void *solver, double *x, dvi__elliptic_report *report);

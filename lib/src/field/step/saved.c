@@ -148,12 +148,25 @@ dvi_status dvi__saved_march_put(const dvi__saved_march *march, dvi__sections_wri
   return dvi__pieces_put(march->mesh, march->pieces, march->piece, writer);
 }
 
+/* Refuse the state of an integrator, whose solver leaves other roundings. */
+static dvi_status refuse_integrator(const dvi__saved_march *march, const dvi__sections *sections)
+{
+  if (dvi__sections_have(sections, march->method) || !dvi__sections_have(sections, "method"))
+    return DVI_OK;
+  return dvi__fail(
+      DVI_BAD_FILE,
+      "march: %s is the state of an integrator, and of no march. One process writes it "
+      "with an implicit method, and one goes on from it: leave mpirun out",
+      sections->name);
+}
+
 /* Find what was saved, and refuse what another march has saved. */
 static dvi_status find_saved(const dvi__saved_march *march, const dvi__sections *sections,
                              dvi__march_place *at, dvi__section *forms)
 {
   dvi__section found;
   const size_t numbers = (size_t)dvi__pieces_size(march->mesh, march->pieces, march->piece);
+  DVI_TRY(refuse_integrator(march, sections));
   DVI_TRY(dvi__section_find(sections, march->method, march->version, sizeof *at, &found));
   memcpy(at, found.content, sizeof *at);
   if (at->hash != march->at->hash || at->dt != march->at->dt)

@@ -5,10 +5,10 @@
  *     M (6 Z_2 - (12 r + 18) Z_1) + h (h F(Q_2) + 2 r p0) = 0,
  *     q1 = q0 + r (Z_2 - Z_1),      p1 = p0 - h/2 (F(Q_1) + F(Q_2)).
  *
- * A^2 has the eigenvalues exp(+- i pi/3)/12, and their eigenvectors are Z_1 + i sigma Z_2 with sigma
- * = 2 - r, up to factors. In x = Z_1 and y = sigma Z_2 the first equation times 1/12, and the second
- * one times -sigma/12, have the symmetric Jacobian of pairs (field/model/elliptic.h) with an angle
- * of 60 degrees, A = M + h^2/12 K and D_j = h^2/12 w V_uu(Q_j).
+ * A^2 has the eigenvalues exp(+- i pi/3)/12, and their eigenvectors are Z_1 + i sigma Z_2 with
+ * sigma = 2 - r, up to factors. In x = Z_1 and y = sigma Z_2 the first equation times 1/12, and the
+ * second one times -sigma/12, have the symmetric Jacobian of pairs (field/model/elliptic.h) with an
+ * angle of 60 degrees, A = M + h^2/12 K and D_j = h^2/12 w V_uu(Q_j).
  *
  * Coefficients have rests, without which the energy of a linear field would change by the same
  * rounding in each step. Order 4. Sources: Hairer, Lubich and Wanner 2006, secs. II.1.3 and VIII.6,
@@ -31,7 +31,8 @@ static dvi_status find_forces(dvi__implicit_step *s, const double *x)
   return dvi__implicit_force(s, stretch, x + s->field->unknowns, s->force[1]);
 }
 
-/* Rests come last, when the large terms have cancelled. */
+/* Rests come last, when the large terms have cancelled. The forces of the last residual are those
+ * of the solution. */
 static dvi_status residual(void *of, const double *x, double *r)
 {
   dvi__implicit_step *s = of;
@@ -81,11 +82,6 @@ static dvi_status begin(dvi__implicit_step *s)
   return DVI_OK;
 }
 
-static dvi_status end(dvi__implicit_step *s)
-{
-  return find_forces(s, s->x);
-}
-
 static void move(const dvi__implicit_step *s, int64_t i, double *q, double *p)
 {
   const double way = stretch * s->x[s->field->unknowns + i] - s->x[i];
@@ -98,5 +94,4 @@ const dvi__rule dvi__gauss_rule = {.name = "galerkin-2",
                                    .forces = 2,
                                    .equations = equations,
                                    .begin = begin,
-                                   .end = end,
                                    .move = move};
