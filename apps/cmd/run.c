@@ -13,7 +13,7 @@
 #include "load/density.h"
 #include "load/open.h"
 #include "cli/options.h"
-#include "load/share.h"
+#include "shares/share.h"
 #include "module/ranks.h"
 #include "cli/outputs.h"
 #include "watch/field_run.h"
@@ -255,7 +255,7 @@ static int check_shared(const run_request *request, const problem *scene)
     const char *option, *given;
   } whole[] = {{"pvd", request->pvd}, {"map", request->map}};
   if (ranks_count() == 1) return DONE;
-  const int code = share_check("run", scene, request->method, true);
+  const int code = share_check("run", scene, request->method, ranks_count());
   if (code != DONE) return code;
   for (size_t i = 0; i < sizeof whole / sizeof *whole; i++)
     if (whole[i].given != NULL)

@@ -60,6 +60,27 @@ step: {fraction: 0.5}
 until: 1
 SCENE
 
+# A grid of which steps are taken together.
+cat >deep.yaml <<'SCENE'
+mesh: {generator: box, cells: [16, 32, 80]}
+field: maxwell
+boundary: {boundary: pec, left: {cpml: 3}}
+initial: {E: [sin(pi*y), 0, cos(2*pi*x)]}
+method: yee
+step: {fraction: 0.5}
+until: 1
+SCENE
+cat >bar.yaml <<'SCENE'
+mesh: {generator: kuhn, cells: [8, 2, 2], size: [3, 1, 1]}
+field: elastic
+materials: {all: {law: linear, young: 200, poisson: 0.3, rho: 1}}
+boundary: {left: fixed}
+initial: {u': "[0, 0, 0.1*x]"}
+method: avi
+step: {fraction: 0.6}
+until: 1
+SCENE
+
 # by N ARGUMENT...: dvi run by N processes, without mpirun if N is 1.
 by() {
   ranks=$1
