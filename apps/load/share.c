@@ -12,7 +12,55 @@
 #include "load/stand_in.h"
 #include "module/ranks.h"
 
-enum { RANKS_SHOWN = 16, HOW_SIZE = 64 };
+enum { RANKS_SHOWN = 16, HOW_SIZE = 64, SENTENCE_SIZE = 512 };
+
+/* What processes share of a scene: the words for its methods, and those for a remedy. */
+typedef struct shared_methods {
+  const char *all, *remedy;
+} shared_methods;
+
+static shared_methods methods_of(const problem *scene, bool takes_all)
+{
+  static const shared_methods of_solids = {"avi and verlet", "avi"}, of_grids = {"yee", "yee"},
+                              of_waves = {"leapfrog and midpoint",
+                                          "leapfrog, or with a potential midpoint"},
+                              of_all = {"leapfrog and yee", "leapfrog"},
+                              others = {"leapfrog", "leapfrog"};
+  if (!takes_all) return others;
+  if (dvi_scene_elastic(scene->scene) != NULL) return of_solids;
+  if (dvi_scene_grid_only(scene->scene) != NULL) return of_grids;
+  return dvi_scene_marches(scene->scene, "midpoint") ? of_waves : of_all;
+}
+
+/* Tell if processes share a method of a scene. Their waves have midpoint, too. */
+static bool is_shared(const problem *scene, const char *method, bool takes_all)
+{
+  if (method == NULL) return false;
+  if (takes_all && dvi_scene_elastic(scene->scene) != NULL)
+    return dvi_scene_marches(scene->scene, method);
+  if (strcmp(method, "leapfrog") == 0) return true;
+  if (!takes_all) return false;
+  const bool is_wave = dvi_scene_marches(scene->scene, "midpoint");
+  return strcmp(method, is_wave ? "midpoint" : "yee") == 0;
+}
+
+/* A method of the scene is a mistake of its text. */
+static int refuse_method(const char *command, const problem *scene, const char *method,
+                         bool takes_all)
+{
+  const shared_methods known = methods_of(scene, takes_all);
+  char sentence[SENTENCE_SIZE], message[2 * SENTENCE_SIZE] = "";
+  const char *asked = method != NULL ? method : scene->method;
+  (void)snprintf(sentence, sizeof sentence,
+                 "%s: %d processes share %s alone, %s%s; take %s, or "
+                 "leave mpirun out",
+                 command, ranks_count(), known.all,
+                 asked != NULL ? "not " : "and no method is given", asked != NULL ? asked : "",
+                 known.remedy);
+  if (method != NULL || scene->method == NULL) return usage_error("%s", sentence);
+  dvi_scene_tell(scene->scene, "method", sentence, message, sizeof message);
+  return usage_error("%s", message);
+}
 
 int share_check(const char *command, const problem *scene, const char *method, bool takes_all)
 {
@@ -23,22 +71,9 @@ int share_check(const char *command, const problem *scene, const char *method, b
                        "%s is none; leave mpirun out",
                        command, ranks_count(), takes_all ? ", of" : " or of",
                        takes_all ? " or of a solid" : "", scene->name);
-  if (method == NULL) method = scene->method;
-  if (takes_all && !is_solid && method != NULL && strcmp(method, "yee") == 0) return DONE;
-  /* shares of waves have midpoint, too */
-  const bool is_wave = !is_solid && dvi_scene_marches(scene->scene, "midpoint");
-  if (method != NULL &&
-      (is_solid ? dvi_scene_marches(scene->scene, method)
-                : strcmp(method, "leapfrog") == 0 || (is_wave && strcmp(method, "midpoint") == 0)))
-    return DONE;
-  return usage_error("%s: %d processes share %s alone, not %s; give --method %s, or leave mpirun "
-                     "out",
-                     command, ranks_count(),
-                     is_solid    ? "avi and verlet"
-                     : is_wave   ? "leapfrog and midpoint"
-                     : takes_all ? "leapfrog and yee"
-                                 : "leapfrog",
-                     method != NULL ? method : "another method", is_solid ? "avi" : "leapfrog");
+  return is_shared(scene, method != NULL ? method : scene->method, takes_all)
+             ? DONE
+             : refuse_method(command, scene, method, takes_all);
 }
 
 static const table_column columns[] = {
