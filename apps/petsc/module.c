@@ -298,6 +298,7 @@ const petsc_module dvi_petsc = {
     .wait_for_all = wait_for_all,
     .divide = divide,
     .read = read_share,
+    .read_whole = dvi_mesh_read_whole,
     .write = dvi_mesh_write_divided,
     .grid = grid,
     .tell = tell,

@@ -17,7 +17,7 @@
 #include "shares/slabs.h"
 #include "shares/stand_in.h"
 
-enum { RANKS_SHOWN = 16, HOW_SIZE = 64 };
+enum { RANKS_SHOWN = 16, HOW_SIZE = 64, SENTENCE_SIZE = 512 };
 
 static const char *const implicit[] = {"midpoint", "imex", "galerkin"};
 
@@ -31,34 +31,64 @@ bool share_is_implicit(const char *method)
   return false;
 }
 
-/* Tell if shares of a scene's field march by a method. Those of waves have implicit ones. */
-static bool marches(const problem *scene, const char *method)
+/* What there are several processes by, which can be left out. */
+static const char *means(void)
 {
-  return strcmp(method, "leapfrog") == 0 ||
-         (share_is_implicit(method) && dvi_scene_marches(scene->scene, method));
+  return ranks_count() > 1 ? "mpirun" : "--ranks";
+}
+
+/* What processes share of a scene: the words for its methods, and those for a remedy. */
+typedef struct shared_methods {
+  const char *all, *remedy;
+} shared_methods;
+
+static shared_methods methods_of(const problem *scene)
+{
+  static const shared_methods of_solids = {"avi and verlet", "avi"}, of_grids = {"yee", "yee"},
+                              of_waves = {"leapfrog, midpoint, imex and galerkin",
+                                          "leapfrog, or with a potential midpoint"},
+                              of_light = {"leapfrog and yee", "leapfrog"};
+  if (elastic_of(scene) != NULL) return of_solids;
+  if (dvi_scene_grid_only(scene->scene) != NULL) return of_grids;
+  return dvi_scene_marches(scene->scene, "midpoint") ? of_waves : of_light;
+}
+
+/* Tell if processes share a method of a scene. Those of waves have implicit ones. */
+static bool is_shared(const problem *scene, const char *method)
+{
+  if (method == NULL) return false;
+  if (elastic_of(scene) != NULL) return dvi_scene_marches(scene->scene, method);
+  if (strcmp(method, "leapfrog") == 0) return true;
+  if (!dvi_scene_marches(scene->scene, "midpoint")) return strcmp(method, "yee") == 0;
+  return share_is_implicit(method) && dvi_scene_marches(scene->scene, method);
+}
+
+/* A method of the scene is a mistake of its text. */
+static int refuse_method(const char *command, const problem *scene, const char *method,
+                         int processes)
+{
+  const shared_methods known = methods_of(scene);
+  char sentence[SENTENCE_SIZE], message[2 * SENTENCE_SIZE] = "";
+  const char *asked = method != NULL ? method : scene->method;
+  (void)snprintf(sentence, sizeof sentence,
+                 "%s: %d processes share %s alone, %s%s; take %s, or leave %s out", command,
+                 processes, known.all, asked != NULL ? "not " : "and no method is given",
+                 asked != NULL ? asked : "", known.remedy, means());
+  if (method != NULL || scene->method == NULL) return usage_error("%s", sentence);
+  dvi_scene_tell(scene->scene, "method", sentence, message, sizeof message);
+  return usage_error("%s", message);
 }
 
 int share_check(const char *command, const problem *scene, const char *method, int processes)
 {
-  const char *remedy = ranks_count() > 1 ? "mpirun" : "--ranks";
   const bool is_solid = scene->scene != NULL && elastic_of(scene) != NULL;
   if (scene->scene == NULL || !(is_solid || dvi_scene_marches(scene->scene, "leapfrog")))
     return usage_error("%s: %d processes share a scene of waves, of Maxwell's field or of a solid "
                        "on a mesh, and %s is none; leave %s out",
-                       command, processes, scene->name, remedy);
-  if (method == NULL) method = scene->method;
-  if (!is_solid && method != NULL && strcmp(method, "yee") == 0) return DONE;
-  const bool is_wave = !is_solid && dvi_scene_marches(scene->scene, "midpoint");
-  if (method != NULL &&
-      (is_solid ? dvi_scene_marches(scene->scene, method) : marches(scene, method)))
-    return DONE;
-  return usage_error("%s: %d processes share %s alone, not %s; give --method %s, or leave %s out",
-                     command, processes,
-                     is_solid  ? "avi and verlet"
-                     : is_wave ? "leapfrog, midpoint, imex and galerkin"
-                               : "leapfrog and yee",
-                     method != NULL ? method : "another method", is_solid ? "avi" : "leapfrog",
-                     remedy);
+                       command, processes, scene->name, means());
+  return is_shared(scene, method != NULL ? method : scene->method)
+             ? DONE
+             : refuse_method(command, scene, method, processes);
 }
 
 /* ---- the table ---- */

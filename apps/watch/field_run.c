@@ -61,14 +61,14 @@ static int refuse_options(const run_request *r)
               {r->how.control != NULL, "step-control"}};
   if (r->verify)
     return usage_error(
-        "run: --verify is for mechanical methods such as midpoint; compare the rows of "
+        "run: --verify is for mechanical methods such as midpoint%s; compare the rows of "
         "%s, a march of a field, with those of --h at half the step",
-        r->method);
+        ranks_count() > 1 ? " in one process" : "", r->method);
   for (size_t i = 0; i < sizeof list / sizeof *list; i++)
     if (list[i].given)
-      return usage_error("run: --%s is for mechanical methods such as midpoint; %s is a march of a "
-                         "field",
-                         list[i].name, r->method);
+      return usage_error("run: --%s is for mechanical methods such as midpoint%s; %s is a march of "
+                         "a field",
+                         list[i].name, ranks_count() > 1 ? " in one process" : "", r->method);
   if (!isnan(r->h) && !(r->h > 0))
     return usage_error("run: --h %g: a march of a field goes forward", r->h);
   if (!isnan(r->t_end) && !(r->t_end >= 0))

@@ -15,6 +15,10 @@ as_one 3 torus.yaml --columns energy,gauss,e
 as_one 4 box.yaml --every 5
 as_one 2 probes.yaml
 as_one 4 grid.yaml
+columns=energy,growth,momentum_x,angular_z,tip_z,middle
+as_one 2 solid.yaml --columns $columns
+as_one 4 solid.yaml --columns $columns --method verlet
+as_one 3 solid.yaml --columns $columns --method avi:classes=no
 sed -e 's/{cpml: 2}/absorbing/' \
   -e 's/^  s: .*/  s: {of: B, at: [0.9, 0.9, 0.9], along: [0, 0, 1]}/' grid.yaml >walls.yaml
 as_one 3 walls.yaml --columns energy,gauss,charge,divergence,e,s
@@ -25,7 +29,6 @@ as_one 2 wave.yaml --final --plot all.svg
 [ -s all.svg ] || fail "no plot"
 
 # By midpoint any number of processes writes the same rows, which are those of one up to roundoff.
-{ cat wave.yaml; echo 'potential: 1 - cos(u)'; } >kink.yaml
 for count in 1 2 3; do
   by $count kink.yaml --method midpoint --h 0.05 --every 5 >rows$count.csv ||
     fail "$count processes: no rows by midpoint"
@@ -85,6 +88,7 @@ every_way() {
 }
 every_way wave.yaml --h 0.002 --every 4
 every_way grid.yaml --h 0.01 --every 5
+every_way solid.yaml --h 0.004 --every 5 --method verlet
 every_way torus.yaml --h 0.004 --every 5
 together 1 'cannot read' wave.yaml --resume nowhere
 together 2 'half.state. stands at t = ' torus.yaml --h 0.004 --t-end 0.1 --resume half.state
@@ -146,7 +150,28 @@ together 1 'the step 1 is not below the bound' wave.yaml --h 1
 sed 's/exp(/sqrt(x - 0.5)*exp(/' wave.yaml >nan.yaml
 sed 's/0.9, 0.13/3, 4/' probes.yaml >outside.yaml
 together 2 'the start is not finite at vertex' nan.yaml # on one process, on which the others wait
-together 2 '--method yee: several processes share yee on grids' wave.yaml --method yee
+together 2 'run: 2 processes share yee alone, not avi; take yee, or' grid.yaml --method avi
+together 2 'run: 2 processes share avi and verlet alone, not tents; take avi, or' solid.yaml \
+  --method tents
+together 2 'kink.yaml:7:9: march: the field has a potential, .*; midpoint does' kink.yaml
+together 2 '--method yee: several processes share yee on grids' torus.yaml --method yee
+together 2 'run: --alarm is for mechanical methods such as midpoint in one process' wave.yaml \
+  --alarm energy=1
+
+# edited SCENE EDIT PLACE WORDS: processes refuse an edited scene at a place.
+edited() {
+  sed "$2" "$1" >edited.yaml
+  together 2 "edited.yaml:$3: .*$4" edited.yaml
+}
+edited wave.yaml 's/^method: .*/method: yee/' 7:9 'leapfrog and midpoint alone, not yee; take l'
+edited wave.yaml 's/^boundary.*/&\nstar: barycentric/' 6:7 'not diagonal .* take midpoint, the c'
+edited wave.yaml 's/^boundary.*/&\ndamping: 0.1/' 6:10 'takes the friction in one process'
+edited torus.yaml 's/^field.*/&\nstar: whitney/' 3:7 'not diagonal .* take the circumcentric star'
+edited torus.yaml 's/{E: .*/{B: [0, 0, 1]}/' 5:10 'take a start by A, or one process'
+edited solid.yaml 's/alpha: 0.1/beta: 0.1/' 3:12 'a damping beta .* take one process'
+edited wave.yaml 's/^field: .*/space: fem:degree=1\nfields: {u: scalar}\ndensity: u'"'"'^2\/2/
+  /^ *all/d; /^materials/d; s/fixed/free/; s/leapfrog/midpoint/; s/{fraction: 0.5}/0.1/' 4:10 \
+  'no densities: run this one in one process'
 sed -e 's/cells: .*/cells: [50]}/' -e 's/{E: .*/{E: x}/' -e '/^ *[es]:/d' -e '/^probes/d' \
   -e '/cpml/d' grid.yaml >line.yaml
 together 2 'yee: a grid of one axis cannot be divided' line.yaml
