@@ -16,6 +16,7 @@ if [ ! -e "$(dirname "$dvi")/dvi_petsc.so" ]; then
 fi
 as_one 3 probes.yaml
 as_one 2 grid.yaml
+drawn 3 pvd field.pvd torus.yaml --every 12
 killed 3 1 2
 
 # A mesh that processes read in parts.
