@@ -111,6 +111,20 @@ as_one() {
   same one.csv all.csv "$count processes, $*"
 }
 
+# drawn N OPTION FILE SCENE OPTION...: N processes write the files of one.
+drawn() {
+  count=$1 option=$2 file=$3 drawn=../$4
+  shift 4
+  set -- "$drawn" "$@"
+  rm -rf alone together
+  mkdir alone together
+  (cd alone && by 1 "$@" --out rows.csv "--$option" "$file" 2>said) ||
+    fail "$*: dvi run --$option fails"
+  (cd together && by "$count" "$@" --out rows.csv "--$option" "$file" 2>said) ||
+    fail "$*: $count processes fail with --$option"
+  diff -r alone together || fail "$*: $count processes draw other files with --$option"
+}
+
 # told NAME CODE WANTED WORDS: an exit code, and one sentence with the words, in the file err.
 told() {
   [ "$2" -eq "$3" ] || fail "$1: exit code $2, not $3"
