@@ -10,7 +10,7 @@
 #include "support/suite.h"
 #include "support/waves/boxes.h"
 
-enum { PROCESSES = 6, TRIALS = 24 };
+enum { PROCESSES = 6, TRIALS = 18 };
 
 typedef struct processes {
   const box_trial *trial;
@@ -92,6 +92,10 @@ START_TEST(bad_divisions_are_refused)
   refuse(&small, &ranks, DVI_BAD_ARGUMENT, "yee: ranks.parts is -2 for axis y; set 0 or more");
   ranks = good, ranks.parts[0] = 2;
   refuse(&small, &ranks, DVI_UNSUPPORTED, "yee: axis x is to have 2 parts, but is not divided");
+  ranks = good, ranks.count = 1, ranks.parts[1] = 2;
+  refuse(&small, &ranks, DVI_BAD_ARGUMENT, "among 1 processes by 0 x 2 x 0 parts");
+  ranks = good, ranks.parts[2] = 2;
+  refuse(&small, &ranks, DVI_BAD_ARGUMENT, "by 0 x 0 x 2 parts");
   ranks = good, ranks.parts[1] = 1;
   refuse(&small, &ranks, DVI_BAD_ARGUMENT, "by 0 x 1 x 0 parts, where 0 is any number");
   ranks = good, ranks.count = 3;

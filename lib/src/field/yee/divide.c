@@ -57,8 +57,8 @@ static int is_possible(const dvi__yee *y, const dvi_yee_ranks *r, int axis, int 
   return (asked == 0 || asked == parts) && (parts == 1 || y->axis[axis].cells / parts >= LEAST);
 }
 
-/* Choose the parts of y and z, which stay 1 if there is no division. */
-static void choose_parts(const dvi_yee_ranks *r, dvi__yee *y)
+/* Choose the parts of y and z. Return 0 if there is no division. */
+static int choose_parts(const dvi_yee_ranks *r, dvi__yee *y)
 {
   double least = (double)INFINITY;
   for (int planes = r->count; planes > 0; planes--) {
@@ -72,16 +72,17 @@ static void choose_parts(const dvi_yee_ranks *r, dvi__yee *y)
     y->parts[1] = rows;
     y->parts[2] = planes;
   }
+  return isfinite(least);
 }
 
 static dvi_status take_parts(const dvi_yee_ranks *r, dvi__yee *y)
 {
-  if (y->axes == 1)
+  DVI_TRY(check_ranks(r));
+  if (y->axes == 1 && r->count > 1)
     return dvi__fail(DVI_UNSUPPORTED,
                      "yee: a grid of one axis cannot be divided among %d processes; run it on one",
                      r->count);
-  choose_parts(r, y);
-  if (y->parts[1] * y->parts[2] != r->count)
+  if (!choose_parts(r, y))
     return dvi__fail(DVI_BAD_ARGUMENT,
                      "yee: %d x %d x %d boxes cannot be divided among %d processes by %d x %d x %d "
                      "parts, where 0 is any number, so that each of them has 2 boxes of y and of "
@@ -115,8 +116,7 @@ dvi_status dvi__yee_divide(const dvi_yee_terms *terms, dvi__yee *y)
 {
   const dvi_yee_ranks *r = terms->ranks;
   for (int l = 0; l < 3; l++) y->parts[l] = 1;
-  if (r != NULL) DVI_TRY(check_ranks(r));
-  if (r != NULL && r->count > 1) DVI_TRY(take_parts(r, y));
+  if (r != NULL) DVI_TRY(take_parts(r, y));
   DVI_TRY(dvi__yee_choose_together(y, terms));
   for (int l = 0; l < 3; l++) take_part(y, l);
   return DVI_OK;
