@@ -51,8 +51,8 @@ static void tell_planes(int steps, double bytes, double messages)
                  "once",
                  steps, steps);
   else
-    (void)printf("a step: all processes receive a plane of B from the process before and one of E "
-                 "from the next");
+    (void)printf("a step: all processes receive a plane of B from the processes before and one of "
+                 "E from the next");
   (void)printf(", %.0f bytes in %.0f messages together\n", bytes, messages);
 }
 

@@ -40,14 +40,18 @@ explained 2 bar.yaml --method verlet
 says out.txt ' 6 messages together$' verlet
 explained 2 bar.yaml
 says out.txt '^counted in a step of [0-9.e-]*: 1 exchanges' avi
-# Slabs are foreseen to the last byte, for steps that go together, too.
+# Blocks are foreseen to the last byte, for steps that go together, too.
 explained 2 grid.yaml
-"$dvi" explain grid.yaml --ranks 2 --csv foreseen.csv >out.txt || fail "slabs are not foreseen"
+"$dvi" explain grid.yaml --ranks 2 --csv foreseen.csv >out.txt || fail "blocks are not foreseen"
 same shares.csv foreseen.csv "two slabs"
 explained 2 deep.yaml
 says out.txt '^3 steps together: all processes receive E and B of 3 planes' deep.yaml
-"$dvi" explain deep.yaml --ranks 2 --csv foreseen.csv >out.txt || fail "slabs are not foreseen"
+"$dvi" explain deep.yaml --ranks 2 --csv foreseen.csv >out.txt || fail "blocks are not foreseen"
 same shares.csv foreseen.csv "two slabs, steps together"
+# 4 slabs of the 9 boxes would be too thin, and so y is divided, too.
+explained 4 grid.yaml
+"$dvi" explain grid.yaml --ranks 4 --csv foreseen.csv >out.txt || fail "blocks are not foreseen"
+same shares.csv foreseen.csv "four blocks"
 
 # A step is measured on processes that dvi starts, and predicted for more of them.
 "$dvi" bench torus.yaml --scale ranks=1,2,8,32,...,300 --rounds 1 --steps 2 --csv scale.csv \
