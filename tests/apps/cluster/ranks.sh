@@ -51,7 +51,7 @@ by 2 kink.yaml --method galerkin --h 0.05 --t-end 1 --every 5 | tail -n 2 >whole
 by 3 kink.yaml --method galerkin --h 0.05 --t-end 1 --every 5 --resume half.state >part
 tail -n 2 part >rest
 same whole rest "two processes and then three by galerkin"
-together 2 'galerkin on shares has degree=1 or degree=2' wave.yaml --method galerkin:degree=3 --h 0.1
+together 2 'galerkin on shares has degree=1 or degree=2' wave.yaml --method galerkin:degree=3
 together 1 'is the state of an integrator, and of no march' kink.yaml --method midpoint --h 0.05 \
   --resume from1.state
 by 1 kink.yaml --method midpoint --h 0.05 --resume from2.state 2>err && fail "one goes on"
