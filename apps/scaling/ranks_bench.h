@@ -18,10 +18,12 @@ typedef struct ranks_request {
 
 /** The mesh and a step on it. */
 typedef struct whole_run {
-  int dimension, degree;
-  double cells;        /**< of the highest degree */
-  double numbered;     /**< of the degree that has most cells */
-  double bytes, flops; /**< that a step moves and takes */
+  timed_kind kind;
+  const char *method;
+  int dimension;       /**< of the cuts: 1 for a grid, which is cut into slabs */
+  double cells;        /**< of the highest degree, or values of a grid */
+  double numbered;     /**< of the degree that has most cells. 0 for a grid */
+  double bytes, flops; /**< that a step moves and takes, NaN if not counted */
   double state_bytes;  /**< of a saved state */
   dvi_study_spread seconds;
 } whole_run;
@@ -34,6 +36,7 @@ typedef struct shared_run {
   double cells; /**< of the whole mesh */
   mesh_cut cut;
   dvi_study_spread seconds;
+  double plane;      /**< of a grid: values of the planes that come for a step */
   double exchange;   /**< seconds of a refresh alone, the least of the rounds */
   double agreements; /**< of all ranks in a step */
 } shared_run;
@@ -55,6 +58,8 @@ typedef struct ranks_bench {
   int cuts; /**< the first one is the whole mesh */
   cut_run cut[CUTS_MAX];
   double mesh_bytes; /**< of the heap that the whole mesh holds, NaN if not known */
+  bool is_in_parts;  /**< no process holds the whole mesh */
+  double most_ranks; /**< that can share a grid. Infinite for a mesh */
   double base;       /**< the parameter of weak scaling for one rank */
   int shared;
   shared_run run[2 * SHARED_MAX];

@@ -16,7 +16,7 @@ static bool fit_compute(ranks_bench *b)
   }
   if (!step_cost_fit(b->cuts, bytes, seconds, &b->cost.per_step, &b->cost.per_byte, b->deviation))
     return false;
-  b->own = b->whole.seconds.least / seconds[0];
+  b->own = b->whole.kind == TIMED_FIELD ? b->whole.seconds.least / seconds[0] : 1;
   b->cost.per_step *= b->own;
   b->cost.per_byte *= b->own;
   return true;
@@ -70,6 +70,7 @@ bool ranks_model_predict(const ranks_bench *b, double ranks, bool is_weak, step_
 {
   const double cells = b->whole.cells * (is_weak ? ranks : 1);
   step_prediction one;
+  if (!is_weak && ranks > b->most_ranks) return false;
   if (!step_cost_predict(&b->cost, 1, b->whole.cells, &one) ||
       !step_cost_predict(&b->cost, ranks, cells, p))
     return false;

@@ -36,6 +36,22 @@ paste -d , rows1.csv rows3.csv | awk -F , '
   $1 != $3 || ($2 - $4) ^ 2 > 1e-26 { exit 1 }
   END { if (NR != 6) exit 1 }' || fail "midpoint: $(cat rows3.csv), and of one $(cat rows1.csv)"
 
+# ---- steps of more processes ----
+
+# Solids, and meshes that no process reads as a whole.
+"$dvi" mesh bcc-torus --cells 3,3,3 --size 1,1,1 --write torus.h5 >out || fail "no torus.h5"
+sed 's/^mesh: .*/mesh: {file: torus.h5}/' torus.yaml >parts.yaml
+for scene in 'bar.yaml --method verlet' parts.yaml; do
+  # shellcheck disable=SC2086
+  mpirun -np 3 "$dvi" bench $scene --scale ranks=1,2,3,...,40 --rounds 1 --steps 2 \
+    --csv scale.csv >out || fail "$scene: no scaling"
+  awk -F, '$1 == "strong" { rows++; measured += $10 != ""; bad += !($5 > 0 && $6 > 0) }
+    END { exit !(rows >= 8 && measured == 3 && !bad) }' scale.csv ||
+    fail "$scene: $(cat scale.csv)"
+done
+says out '^  start: ranks read the mesh in parts' parts.yaml
+says out '^mesh: 324 cells' parts.yaml
+
 # ---- checkpoints ----
 
 # goes_on N M SCENE OPTION...: half of a run by N, and the rest by M, are the whole one.

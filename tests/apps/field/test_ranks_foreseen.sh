@@ -67,6 +67,18 @@ awk -F, 'NR == 1 { next }
     if (($7 == 0) != ($3 == 1) || ($10 != "") != measured) bad++
     if ($15 != ($1 == "weak" ? 324 * $3 : 324)) bad++ }
   END { exit !(NR == 13 && !bad) }' scale.csv || fail "bench: $(cat scale.csv)"
+# Slabs of a grid, of which at most half as many are predicted as there are planes of boxes. What
+# two of them receive in a step is what was counted.
+"$dvi" bench deep.yaml --scale ranks=1,2,16,...,1024 --rounds 1 --steps 3 --csv slabs.csv \
+  >out.txt || fail "bench: no scaling of grids"
+says out.txt '^Ranks that share deep.yaml, by yee' 'a grid'
+says out.txt '^  more ranks than half of the planes' 'a grid'
+bytes=$(awk -F, 'NR == 2 { printf "%d", $7 / 3 }' shares.csv)
+awk -F, -v bytes="$bytes" '$1 == "strong" { rows++; if ($3 == 2 && $9 != bytes) bad++ }
+  END { exit !(rows == 3 && !bad) }' slabs.csv || fail "a grid: $bytes bytes, and $(cat slabs.csv)"
+"$dvi" bench bar.yaml --scale ranks=1,2 >out.txt 2>&1 && fail "steps of avi are timed"
+says out.txt '^dvi: bench: .* steps of solids by verlet.*not those of avi' 'avi'
+
 # What makes no sense is refused before processes start.
 for option in '--scale ranks=1,2 --latency 0' '--scale ranks=1,2 --bandwidth nan' \
   '--scale ranks=2,1' '--scale ranks=1,2 --method avi' '--scale ranks=1,2 --at 1e-6' \
