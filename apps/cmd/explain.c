@@ -216,13 +216,12 @@ static int check_shares(const explain_request *r, const problem *scene)
   return share_check("explain", scene, r->method, r->ranks > 0 ? (int)r->ranks : ranks_count());
 }
 
-/* One process has no march by midpoint, but a system. */
+/* One process has no implicit march, but a system. */
 static int open_shares(const explain_request *r, const problem *scene, const char *method,
                        dvi_march **march)
 {
-  if (r->ranks == 0 || strcmp(method, "midpoint") != 0)
-    return open_steps(scene, method, r->h, march);
-  (void)printf("march: midpoint, whose steps have no bound\n");
+  if (r->ranks == 0 || !share_is_implicit(method)) return open_steps(scene, method, r->h, march);
+  (void)printf("march: %s, whose steps have no bound\n", method);
   return DONE;
 }
 

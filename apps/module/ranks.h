@@ -44,6 +44,10 @@ dvi_status ranks_divide(const dvi_mesh *mesh, dvi_mesh **share, void *user);
 /** Read a share from a file of HDF5 in parts, as its other callback. */
 dvi_status ranks_read(const char *path, dvi_mesh **share, void *user);
 
+/** Read the whole mesh of such a file in a process that is alone. Returns DONE, or complains and
+ * returns the exit code. */
+int ranks_read_mesh(const char *path, dvi_mesh **mesh);
+
 /** Write a mesh to such a file. Returns DONE, or complains and returns the exit code. */
 int ranks_write_mesh(const dvi_mesh *mesh, const char *path);
 

@@ -79,15 +79,13 @@ static dvi_status read_share(const char *path, dvi_mesh **share)
 
 /* ---- planes of grids ---- */
 
-static int pass(int way, int around, int64_t count, const double *sent, double *received,
-                void *user)
+static int pass(int to, int from, int64_t count, const double *sent, double *received, void *user)
 {
-  const int from = planes->rank - way;
-  if (around || (from >= 0 && from < planes->count)) {
+  if (from >= 0) {
     of_planes.messages++;
     of_planes.bytes += count * (int64_t)sizeof *received;
   }
-  return planes->pass(way, around, count, sent, received, user);
+  return planes->pass(to, from, count, sent, received, user);
 }
 
 static int sum(int count, int64_t *number, void *user)
@@ -298,6 +296,7 @@ const petsc_module dvi_petsc = {
     .wait_for_all = wait_for_all,
     .divide = divide,
     .read = read_share,
+    .read_whole = dvi_mesh_read_whole,
     .write = dvi_mesh_write_divided,
     .grid = grid,
     .tell = tell,

@@ -63,6 +63,9 @@ typedef struct petsc_module {
   /** Read a share of the mesh in a file of HDF5 likewise, in parts. */
   dvi_status (*read)(const char *path, dvi_mesh **share);
 
+  /** Read the whole mesh of such a file. */
+  dvi_status (*read_whole)(const char *path, dvi_mesh **mesh);
+
   /** Write a whole mesh to such a file. The module need not be started. */
   dvi_status (*write)(const dvi_mesh *mesh, const char *path);
 

@@ -146,11 +146,11 @@ static int time_solid(const timed_request *request, const timed_march *whole, dv
   return code;
 }
 
-/* ---- slabs of a grid ---- */
+/* ---- blocks of a grid ---- */
 
 /* In the first of s steps together s-1 planes of each neighbour are updated, and none in the last
  * one. */
-mesh_cut cut_of_slab(const slab *found, int parts)
+mesh_cut cut_of_block(const block *found, int parts)
 {
   const double s = found->together, ghosts = (double)found->ghosts;
   return (mesh_cut){.parts = parts,
@@ -159,35 +159,35 @@ mesh_cut cut_of_slab(const slab *found, int parts)
                     .messages = found->messages / s};
 }
 
-static int time_slab(const timed_request *request, const timed_march *whole, slab_cutter *cutter,
-                     cut_run *run)
+static int time_block(const timed_request *request, const timed_march *whole, block_cutter *cutter,
+                      cut_run *run)
 {
   const int parts = (int)run->cut.parts;
   const double mean = timed_values(whole) / parts;
-  slab found = {0};
+  block found = {0};
   timed_march timed = {.h = whole->h};
-  dvi_status status = slab_march(cutter, parts / 2, parts, whole->h, &timed.march);
+  dvi_status status = block_march(cutter, parts / 2, parts, whole->h, &timed.march);
   if (status == DVI_BAD_ARGUMENT) { /* there are not as many planes */
     run->cut.parts = 0;
     return DONE;
   }
-  if (status == DVI_OK) status = slab_count(cutter, timed.march, &found);
+  if (status == DVI_OK) status = block_count(cutter, timed.march, &found);
   int code = status == DVI_OK ? DONE : library_error(status);
   if (code == DONE) {
-    run->cut = cut_of_slab(&found, parts);
-    run->cut.share = fmax(run->cut.share, mean); /* the last slab has the last nodes, too */
+    run->cut = cut_of_block(&found, parts);
+    run->cut.share = fmax(run->cut.share, mean); /* the last block has the last nodes, too */
     code = timed_steps(request, &timed, 1, &run->seconds);
   }
   timed_close(&timed);
   return code;
 }
 
-static int cut_slab(const timed_request *request, const timed_march *whole, cut_run *run)
+static int cut_block(const timed_request *request, const timed_march *whole, cut_run *run)
 {
-  slab_cutter *cutter;
-  int code = slab_cutter_open(request->scene, request->settings, &cutter);
-  if (code == DONE) code = time_slab(request, whole, cutter, run);
-  slab_cutter_close(&cutter);
+  block_cutter *cutter;
+  int code = block_cutter_open(request->scene, request->settings, &cutter);
+  if (code == DONE) code = time_block(request, whole, cutter, run);
+  block_cutter_close(&cutter);
   return code;
 }
 
@@ -240,5 +240,5 @@ int cut_run_measure(const timed_request *request, const timed_march *whole, int 
 {
   *run = (cut_run){.cut = {.parts = parts}};
   if (parts == 1) return time_whole(request, whole, run);
-  return whole->kind == TIMED_GRID ? cut_slab(request, whole, run) : cut_mesh(request, whole, run);
+  return whole->kind == TIMED_GRID ? cut_block(request, whole, run) : cut_mesh(request, whole, run);
 }

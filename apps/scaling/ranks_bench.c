@@ -93,30 +93,40 @@ static int measure_alone(ranks_bench *b)
   if (code == DONE) code = timed_steps(&b->request->timed, &timed, 1, &b->whole.seconds);
   if (code == DONE) code = measure_cuts(b, &timed);
   timed_close(&timed);
-  if (code == DONE && b->whole.kind == TIMED_GRID) code = whole_most_slabs(b);
+  if (code == DONE && b->whole.kind == TIMED_GRID) code = whole_foresee(b);
   return code;
 }
 
 /* ---- processes that share ---- */
 
-/* Refresh all that a step needs of others, or for a grid that some steps need together. */
-static dvi_status exchange_once(const timed_march *timed, const slab *own, double *values)
+/* Exchange the planes of two neighbours, or of one, with the processes beside this one, whose order
+ * does not count. */
+static dvi_status pass_planes(const block *own, int workers, double *values)
 {
-  const dvi_yee_ranks *grid = timed->kind == TIMED_GRID ? ranks_grid() : NULL;
-  dvi_status status = DVI_OK;
-  if (timed->kind != TIMED_GRID) {
-    for (int i = 0; i < timed_times(timed) && status == DVI_OK; i++)
-      status = ranks_refresh(timed_degree(timed), values);
-    return status;
-  }
+  const dvi_yee_ranks *grid = ranks_grid();
   const int64_t count = own->ghosts / (own->messages > 0 ? own->messages : 1);
-  for (int way = 1; way >= -1 && grid != NULL && status == DVI_OK; way -= 2)
-    if (grid->pass(way, 0, count, values, values + count, grid->user) != 0)
-      status = DVI_SOLVER_FAILED;
+  if (grid == NULL) return DVI_SOLVER_FAILED;
+  for (int way = 1; way >= -1; way -= 2) {
+    const int to = grid->rank + way, from = grid->rank - way;
+    if (grid->pass(to < workers ? to : -1, from < workers ? from : -1, count, values,
+                   values + count, grid->user) != 0)
+      return DVI_SOLVER_FAILED;
+  }
+  return DVI_OK;
+}
+
+/* Refresh all that a step needs of others, or for a grid that some steps need together. */
+static dvi_status exchange_once(const timed_march *timed, const block *own, int workers,
+                                double *values)
+{
+  dvi_status status = DVI_OK;
+  if (timed->kind == TIMED_GRID) return pass_planes(own, workers, values);
+  for (int i = 0; i < timed_times(timed) && status == DVI_OK; i++)
+    status = ranks_refresh(timed_degree(timed), values);
   return status;
 }
 
-static int measure_refresh(const timed_march *timed, const slab *own, shared_run *run, long rounds)
+static int measure_refresh(const timed_march *timed, const block *own, shared_run *run, long rounds)
 {
   const bool is_grid = timed->kind == TIMED_GRID;
   const int64_t room = is_grid ? 2 * own->ghosts
@@ -130,7 +140,7 @@ static int measure_refresh(const timed_march *timed, const slab *own, shared_run
     good = slowest_of(run->ranks, 0, &ready);
     const double began = elapsed_now();
     for (int i = 0; i < REFRESHES && status == DVI_OK; i++)
-      status = exchange_once(timed, own, values);
+      status = exchange_once(timed, own, run->ranks, values);
     good = slowest_of(run->ranks, (elapsed_now() - began) / refreshes, sample + round) && good;
   }
   free(values);
@@ -155,32 +165,33 @@ static void find_cut(const timed_march *timed, shared_run *run)
   }
 }
 
-/* Do the same for slabs, of which each rank foresees its own. */
-static int find_slabs(const timed_request *request, slab *own, shared_run *run)
+/* Do the same for blocks, of which each rank foresees its own. */
+static int find_blocks(const timed_request *request, block *own, shared_run *run)
 {
-  slab *all = calloc((size_t)run->ranks, sizeof *all);
-  slab_cutter *cutter = NULL;
+  block *all = calloc((size_t)run->ranks, sizeof *all);
+  block_cutter *cutter = NULL;
   dvi_march *march = NULL;
-  int code = all != NULL ? slab_cutter_open(request->scene, request->settings, &cutter)
+  int code = all != NULL ? block_cutter_open(request->scene, request->settings, &cutter)
                          : library_error(DVI_NO_MEMORY);
   if (code == DONE) {
-    dvi_status status = slab_march(cutter, ranks_number(), run->ranks, request->h, &march);
-    if (status == DVI_OK) status = slab_count(cutter, march, own);
+    dvi_status status = block_march(cutter, ranks_number(), run->ranks, request->h, &march);
+    if (status == DVI_OK) status = block_count(cutter, march, own);
     if (status != DVI_OK) code = library_error(status);
   }
   if (code == DONE && !ranks_gather(own, sizeof *own, all)) code = FAILED;
   run->cut = (mesh_cut){.parts = run->ranks};
   run->cells = run->plane = 0;
   for (int r = 0; r < run->ranks && all != NULL && code == DONE; r++) {
-    const mesh_cut cut = cut_of_slab(all + r, run->ranks);
+    const mesh_cut cut = cut_of_block(all + r, run->ranks);
     run->cells += (double)all[r].values;
-    run->plane = fmax(run->plane, (double)all[r].ghosts / all[r].together);
+    run->plane = fmax(run->plane,
+                      (double)all[r].ghosts / (all[r].together * fmax(1, all[r].neighbours)));
     run->cut.share = fmax(run->cut.share, cut.share);
     run->cut.bytes = fmax(run->cut.bytes, cut.bytes);
     run->cut.messages = fmax(run->cut.messages, cut.messages);
   }
   dvi_march_destroy(&march);
-  slab_cutter_close(&cutter);
+  block_cutter_close(&cutter);
   free(all);
   return code;
 }
@@ -228,7 +239,7 @@ static double agreements_so_far(void)
 }
 
 /* Time steps, and count agreements in them. */
-static int time_shared(const timed_request *request, const timed_march *timed, const slab *own,
+static int time_shared(const timed_request *request, const timed_march *timed, const block *own,
                        shared_run *run)
 {
   const double began = dvi_march_time(timed->march), agreements = agreements_so_far();
@@ -248,9 +259,9 @@ static int measure_shared(ranks_bench *b, const timed_request *request, shared_r
                                        .user = &heap,
                                        .grid = ranks_grid()};
   timed_march timed;
-  slab own = {.together = 1};
+  block own = {.together = 1};
   int code = timed_open(request, &division, &timed);
-  if (code == DONE && timed.kind == TIMED_GRID) code = find_slabs(request, &own, run);
+  if (code == DONE && timed.kind == TIMED_GRID) code = find_blocks(request, &own, run);
   if (code == DONE && timed.kind != TIMED_GRID) find_cut(&timed, run);
   if (code == DONE) {
     run->is_oversubscribed = ranks_on_machine() > b->cores;
@@ -282,8 +293,8 @@ static int measure_weak(ranks_bench *b, double cells, shared_run *run)
   grown.settings = &settings;
   const int code = measure_shared(b, &grown, run);
   if (code == DONE && fabs(run->plane - run[-1].plane) > tolerance * run->plane)
-    return usage_error("bench: --weak %s: the planes of the last axis grow, along which a grid is "
-                       "cut into slabs; take a parameter that makes this axis longer",
+    return usage_error("bench: --weak %s: the planes of the last axis grow, along which ranks have "
+                       "slabs of a longer grid; take a parameter that makes this axis longer alone",
                        b->request->weak);
   if (code != DONE || fabs(run->cells / (cells * run->ranks) - 1) < tolerance) return code;
   return usage_error(
@@ -411,8 +422,7 @@ int ranks_bench_run(const ranks_request *request)
 {
   ranks_bench b = {.request = request,
                    .cores = cores_count(),
-                   .is_in_parts = timed_is_in_parts(&request->timed),
-                   .most_ranks = INFINITY};
+                   .is_in_parts = timed_is_in_parts(&request->timed)};
   int code = ranks_agree(rank_counts_read(request->scaled, &b.asked));
   if (code == DONE) code = measure_all(&b);
   if (code == DONE && ranks_is_first()) code = ranks_report(&b);

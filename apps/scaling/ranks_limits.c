@@ -21,7 +21,7 @@ static double machine_memory(void)
  * compute, by bisection, or 0 if that never happens. */
 static double find_waiting(const ranks_bench *b, step_prediction *at)
 {
-  double none = 1, all = fmin(b->whole.cells, b->most_ranks), efficiency;
+  double none = 1, all = b->whole.cells, efficiency;
   if (!ranks_model_predict(b, all, false, at, &efficiency) || at->exchange <= at->compute) return 0;
   while (all > none * 1.001 + 1) {
     const double middle = sqrt(none * all);
@@ -35,10 +35,22 @@ static double find_waiting(const ranks_bench *b, step_prediction *at)
   return all;
 }
 
+/* Find the first of the numbers that are asked for, of which blocks of a grid are foreseen. */
+static double find_waiting_blocks(const ranks_bench *b, step_prediction *at)
+{
+  double efficiency;
+  for (int i = 0; i < b->asked.count; i++)
+    if (ranks_model_predict(b, b->asked.number[i], false, at, &efficiency) &&
+        at->exchange > at->compute)
+      return b->asked.number[i];
+  return 0;
+}
+
 static void print_strong(FILE *stream, const ranks_bench *b)
 {
-  step_prediction at;
-  const double ranks = find_waiting(b, &at);
+  step_prediction at = {.cells = 0};
+  const double ranks = b->whole.kind == TIMED_GRID ? find_waiting_blocks(b, &at)
+                                                   : find_waiting(b, &at);
   if (ranks <= 0) {
     (void)fprintf(stream, "  constant %s: the halo never takes longer than the cells\n",
                   whole_name(&b->whole));
@@ -52,11 +64,9 @@ static void print_strong(FILE *stream, const ranks_bench *b)
       "computes:\n    %s of the halo is the larger part, %.1f of %.1f us. What would be done: %s\n",
       whole_name(&b->whole), ranks, at.cells, whole_unit(&b->whole),
       latency > bytes ? "latency" : "bandwidth", 1e6 * fmax(latency, bytes), 1e6 * at.exchange,
-      b->whole.kind == TIMED_GRID
-          ? "cuts in two or\n    three directions, which have less surface than slabs"
-          : "inner cells while messages\n    are under way, and two steps for one halo of twice "
-            "the "
-            "width");
+      "inner cells while messages\n    are under way, and two steps for one halo of twice "
+      "the "
+      "width");
 }
 
 /* A limit in weak scaling, at a number of ranks. */

@@ -146,8 +146,8 @@ static void print_runs(FILE *stream, const ranks_bench *b)
                 "mesh", "cells", "step", "model", "speed-up", "refresh", "messages");
   for (int i = 0; i < b->shared; i++) {
     const shared_run *r = b->run + i;
-    step_prediction p = {.seconds = (double)NAN};
-    (void)step_cost_predict(&b->cost, r->ranks, r->cells, &p);
+    step_prediction p;
+    ranks_model_run(b, r, &p);
     const double gain = b->whole.seconds.median / r->seconds.median;
     (void)fprintf(stream, "  %6d %6s %10.0f %11.3e %11.3e %10.2f %10.2e %9.3g", r->ranks,
                   r->is_weak ? "grows" : "same", r->cells, r->seconds.median, p.seconds,
@@ -204,10 +204,9 @@ static void print_model(FILE *stream, const ranks_bench *b)
   else
     (void)fprintf(stream, "whatever others do: no run had a core for each rank\n");
   if (b->cuts > 1 && b->whole.kind == TIMED_GRID)
-    (void)fprintf(stream,
-                  "  surface: planes of neighbours and messages are those of up to %.0f slabs, "
-                  "between two others\n",
-                  last->parts);
+    (void)fprintf(stream, "  surface: blocks are foreseen for each number of ranks; of a longer "
+                          "grid ranks have slabs "
+                          "between two others\n");
   else if (b->cuts > 1)
     (void)fprintf(stream,
                   "  surface: the shell of ghosts, their bytes and messages are those of cuts into "
@@ -237,7 +236,7 @@ static void print_all(FILE *stream, const ranks_bench *b, const result_table *ro
   table_print(rows, stream, 2, 0, strong);
   if (strong < b->asked.count)
     (void)fprintf(stream, "  more ranks than %s are left out\n",
-                  b->whole.kind == TIMED_GRID ? "half of the planes of boxes" : "cells");
+                  b->whole.kind == TIMED_GRID ? "the grid has blocks for" : "cells");
   (void)fprintf(stream, "\nWeak scaling: each rank has as many %s as the %s\n",
                 whole_unit(&b->whole), whole_name(&b->whole));
   table_print(rows, stream, 2, strong, table_rows(rows));

@@ -44,7 +44,7 @@ void timed_close(timed_march *timed);
 /** Tell if the scene's mesh is a file that processes read in parts. */
 bool timed_is_in_parts(const timed_request *request);
 
-/** Return the number of values of E and B that a grid has, or the slab of this process. */
+/** Return the number of values of E and B that a grid has, or the block of this process. */
 double timed_values(const timed_march *timed);
 
 /** Return the mesh of a field or a solid. */

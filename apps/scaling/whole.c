@@ -57,7 +57,7 @@ static void count_mesh(const timed_march *timed, whole_run *whole)
 int whole_count(const timed_march *timed, whole_run *whole)
 {
   *whole = (whole_run){.kind = timed->kind, .method = timed->method, .flops = (double)NAN};
-  if (timed->kind == TIMED_GRID) { /* slabs; a step reads and writes each value once */
+  if (timed->kind == TIMED_GRID) { /* a step reads and writes each value once */
     whole->dimension = 1;
     whole->cells = timed_values(timed);
     whole->bytes = 16 * whole->cells;
@@ -70,22 +70,50 @@ int whole_count(const timed_march *timed, whole_run *whole)
   return DONE;
 }
 
-/* ---- slabs ---- */
+/* ---- blocks of a grid ---- */
 
-int whole_most_slabs(ranks_bench *b)
+enum {
+  LOOKED_AT = 4 /* of many blocks: some in the middle, one of which is inside, and the last */
+};
+
+/* Find the most that one of the blocks has. It has 0 parts if there are not as many. */
+static dvi_status foresee(block_cutter *cutter, int ranks, double h, mesh_cut *most)
+{
+  *most = (mesh_cut){.parts = ranks};
+  for (int i = 0; i < LOOKED_AT && i < ranks; i++) {
+    const int inside = ranks / 2 + i < ranks ? ranks / 2 + i : i;
+    dvi_march *march = NULL;
+    block found = {0};
+    dvi_status status = block_march(cutter, i == 0 ? ranks - 1 : inside, ranks, h, &march);
+    if (status == DVI_BAD_ARGUMENT) {
+      most->parts = 0;
+      return DVI_OK;
+    }
+    if (status == DVI_OK) status = block_count(cutter, march, &found);
+    dvi_march_destroy(&march);
+    if (status != DVI_OK) return status;
+    const mesh_cut cut = cut_of_block(&found, ranks);
+    most->share = fmax(most->share, cut.share);
+    most->bytes = fmax(most->bytes, cut.bytes);
+    most->messages = fmax(most->messages, cut.messages);
+  }
+  return DVI_OK;
+}
+
+int whole_foresee(ranks_bench *b)
 {
   const timed_request *r = &b->request->timed;
-  slab_cutter *cutter;
-  const int code = slab_cutter_open(r->scene, r->settings, &cutter);
-  b->most_ranks = 1;
-  for (int i = 0; i < b->asked.count && code == DONE; i++) {
-    dvi_march *march = NULL;
+  block_cutter *cutter;
+  int code = block_cutter_open(r->scene, r->settings, &cutter);
+  dvi_status status = code == DONE ? foresee(cutter, 2, r->h, &b->beside) : DVI_OK;
+  for (int i = 0; i < b->asked.count && code == DONE && status == DVI_OK; i++) {
     const double ranks = b->asked.number[i];
-    const bool fits = ranks <= INT_MAX && slab_march(cutter, 0, (int)ranks, r->h, &march) == DVI_OK;
-    dvi_march_destroy(&march);
-    if (!fits) break;
-    b->most_ranks = ranks;
+    b->foreseen[i] = (mesh_cut){.parts = 0};
+    if (ranks <= 1 || ranks > INT_MAX) continue;
+    status = foresee(cutter, (int)ranks, r->h, b->foreseen + i);
+    if (b->foreseen[i].parts <= 0) break;
   }
-  slab_cutter_close(&cutter);
+  if (status != DVI_OK) code = library_error(status);
+  block_cutter_close(&cutter);
   return code;
 }

@@ -10,7 +10,7 @@ const char *whole_unit(const whole_run *whole);
 /** Count it, of a march on the whole. Returns DONE, or complains and returns the exit code. */
 int whole_count(const timed_march *timed, whole_run *whole);
 
-/** Find the most of the ranks that are asked for, which can share a grid in slabs. Returns DONE, or
- *  complains and returns the exit code. */
-int whole_most_slabs(ranks_bench *b);
+/** Foresee the blocks of a grid for the ranks that are asked for. Returns DONE, or complains and
+ *  returns the exit code. */
+int whole_foresee(ranks_bench *b);
 #endif

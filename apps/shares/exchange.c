@@ -9,13 +9,14 @@
 
 #include "cli/command.h"
 #include "load/elastic.h"
+#include "shares/share.h"
 
 exchange exchange_of(const problem *scene, const char *method)
 {
   const dvi_elastic *solid = elastic_of(scene);
   if (strcmp(method, "yee") == 0)
     return (exchange){.kind = EXCHANGE_PLANES, .times = 1, .steps = 1};
-  if (strcmp(method, "midpoint") == 0)
+  if (share_is_implicit(method))
     return (exchange){.kind = EXCHANGE_SOLUTION, .times = 1, .steps = 1};
   if (solid == NULL)
     return (exchange){.kind = EXCHANGE_FORM,
@@ -50,8 +51,8 @@ static void tell_planes(int steps, double bytes, double messages)
                  "once",
                  steps, steps);
   else
-    (void)printf("a step: all processes receive a plane of B from the process before and one of E "
-                 "from the next");
+    (void)printf("a step: all processes receive a plane of B from the processes before and one of "
+                 "E from the next");
   (void)printf(", %.0f bytes in %.0f messages together\n", bytes, messages);
 }
 

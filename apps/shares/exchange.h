@@ -12,7 +12,7 @@ typedef enum exchange_kind {
   EXCHANGE_SLOTS,    /**< avi: the same, before some of the shortest steps */
   EXCHANGE_EVENTS,   /**< avi:classes=no: where nodes of single cells are */
   EXCHANGE_PLANES,   /**< yee: planes of E and B */
-  EXCHANGE_SOLUTION, /**< midpoint: unknowns, as often as a solution takes */
+  EXCHANGE_SOLUTION, /**< implicit methods: unknowns, as often as a solution takes */
 } exchange_kind;
 
 /** What is exchanged at once. */

@@ -14,34 +14,81 @@
 #include "load/field.h"
 #include "module/ranks.h"
 #include "shares/exchange.h"
-#include "shares/slabs.h"
+#include "shares/blocks.h"
 #include "shares/stand_in.h"
 
-enum { RANKS_SHOWN = 16, HOW_SIZE = 64 };
+enum { RANKS_SHOWN = 16, HOW_SIZE = 64, SENTENCE_SIZE = 512 };
+
+static const char *const implicit[] = {"midpoint", "imex", "galerkin"};
+
+enum { IMPLICIT = sizeof implicit / sizeof *implicit };
+
+bool share_is_implicit(const char *method)
+{
+  const size_t length = strcspn(method, ":");
+  for (int i = 0; i < IMPLICIT; i++)
+    if (strlen(implicit[i]) == length && strncmp(method, implicit[i], length) == 0) return true;
+  return false;
+}
+
+/* What there are several processes by, which can be left out. */
+static const char *means(void)
+{
+  return ranks_count() > 1 ? "mpirun" : "--ranks";
+}
+
+/* What processes share of a scene: the words for its methods, and those for a remedy. */
+typedef struct shared_methods {
+  const char *all, *remedy;
+} shared_methods;
+
+static shared_methods methods_of(const problem *scene)
+{
+  static const shared_methods of_solids = {"avi and verlet", "avi"}, of_grids = {"yee", "yee"},
+                              of_waves = {"leapfrog, midpoint, imex and galerkin",
+                                          "leapfrog, or with a potential midpoint"},
+                              of_light = {"leapfrog and yee", "leapfrog"};
+  if (elastic_of(scene) != NULL) return of_solids;
+  if (dvi_scene_grid_only(scene->scene) != NULL) return of_grids;
+  return dvi_scene_marches(scene->scene, "midpoint") ? of_waves : of_light;
+}
+
+/* Tell if processes share a method of a scene. Those of waves have implicit ones. */
+static bool is_shared(const problem *scene, const char *method)
+{
+  if (method == NULL) return false;
+  if (elastic_of(scene) != NULL) return dvi_scene_marches(scene->scene, method);
+  if (strcmp(method, "leapfrog") == 0) return true;
+  if (!dvi_scene_marches(scene->scene, "midpoint")) return strcmp(method, "yee") == 0;
+  return share_is_implicit(method) && dvi_scene_marches(scene->scene, method);
+}
+
+/* A method of the scene is a mistake of its text. */
+static int refuse_method(const char *command, const problem *scene, const char *method,
+                         int processes)
+{
+  const shared_methods known = methods_of(scene);
+  char sentence[SENTENCE_SIZE], message[2 * SENTENCE_SIZE] = "";
+  const char *asked = method != NULL ? method : scene->method;
+  (void)snprintf(sentence, sizeof sentence,
+                 "%s: %d processes share %s alone, %s%s; take %s, or leave %s out", command,
+                 processes, known.all, asked != NULL ? "not " : "and no method is given",
+                 asked != NULL ? asked : "", known.remedy, means());
+  if (method != NULL || scene->method == NULL) return usage_error("%s", sentence);
+  dvi_scene_tell(scene->scene, "method", sentence, message, sizeof message);
+  return usage_error("%s", message);
+}
 
 int share_check(const char *command, const problem *scene, const char *method, int processes)
 {
-  const char *remedy = ranks_count() > 1 ? "mpirun" : "--ranks";
   const bool is_solid = scene->scene != NULL && elastic_of(scene) != NULL;
   if (scene->scene == NULL || !(is_solid || dvi_scene_marches(scene->scene, "leapfrog")))
     return usage_error("%s: %d processes share a scene of waves, of Maxwell's field or of a solid "
                        "on a mesh, and %s is none; leave %s out",
-                       command, processes, scene->name, remedy);
-  if (method == NULL) method = scene->method;
-  if (!is_solid && method != NULL && strcmp(method, "yee") == 0) return DONE;
-  /* shares of waves have midpoint, too */
-  const bool is_wave = !is_solid && dvi_scene_marches(scene->scene, "midpoint");
-  if (method != NULL &&
-      (is_solid ? dvi_scene_marches(scene->scene, method)
-                : strcmp(method, "leapfrog") == 0 || (is_wave && strcmp(method, "midpoint") == 0)))
-    return DONE;
-  return usage_error("%s: %d processes share %s alone, not %s; give --method %s, or leave %s out",
-                     command, processes,
-                     is_solid  ? "avi and verlet"
-                     : is_wave ? "leapfrog and midpoint"
-                               : "leapfrog and yee",
-                     method != NULL ? method : "another method", is_solid ? "avi" : "leapfrog",
-                     remedy);
+                       command, processes, scene->name, means());
+  return is_shared(scene, method != NULL ? method : scene->method)
+             ? DONE
+             : refuse_method(command, scene, method, processes);
 }
 
 /* ---- the table ---- */
@@ -98,9 +145,9 @@ static int finish(division_table *table, const char *csv)
   return good ? DONE : FAILED;
 }
 
-/* ---- slabs of grids ---- */
+/* ---- blocks of grids ---- */
 
-static int refuse_slab(dvi_status status)
+static int refuse_block(dvi_status status)
 {
   if (status == DVI_UNSUPPORTED && strncmp(dvi_last_error(), "yee", 3) != 0)
     return usage_error("explain: processes share yee on grids alone, without probes of parts and a "
@@ -108,18 +155,18 @@ static int refuse_slab(dvi_status status)
   return library_error(status);
 }
 
-static int measure_slab(slab_cutter *cutter, int rank, int processes, double h, slab *found)
+static int measure_block(block_cutter *cutter, int rank, int processes, double h, block *found)
 {
   dvi_march *march = NULL;
-  dvi_status status = slab_march(cutter, rank, processes, h, &march);
-  if (status == DVI_OK) status = slab_count(cutter, march, found);
+  dvi_status status = block_march(cutter, rank, processes, h, &march);
+  if (status == DVI_OK) status = block_count(cutter, march, found);
   dvi_march_destroy(&march);
-  return status == DVI_OK ? DONE : refuse_slab(status);
+  return status == DVI_OK ? DONE : refuse_block(status);
 }
 
-static void add_slab(division_table *table, const slab *found)
+static void add_block(division_table *table, const block *found)
 {
-  const mesh_division share = {.partitioner = "slabs",
+  const mesh_division share = {.partitioner = "blocks",
                                .owned = found->values,
                                .ghosts = found->ghosts,
                                .bytes_in = found->ghosts * (int64_t)sizeof(double),
@@ -128,30 +175,30 @@ static void add_slab(division_table *table, const slab *found)
   add_share(table, &share);
 }
 
-/* Each process knows its own slab, and gets those of the others. */
-static int gather_slabs(const share_request *r, slab_cutter *cutter, division_table *table,
-                        exchange *what)
+/* Each process knows its own block, and gets those of the others. */
+static int gather_blocks(const share_request *r, block_cutter *cutter, division_table *table,
+                         exchange *what)
 {
-  slab own = {0}, *all = calloc((size_t)ranks_count(), sizeof *all);
-  int code = all != NULL ? measure_slab(cutter, ranks_number(), ranks_count(), r->h, &own)
+  block own = {0}, *all = calloc((size_t)ranks_count(), sizeof *all);
+  int code = all != NULL ? measure_block(cutter, ranks_number(), ranks_count(), r->h, &own)
                          : library_error(DVI_NO_MEMORY);
   code = ranks_agree(code);
   if (code == DONE && !ranks_gather(&own, sizeof own, all)) code = FAILED;
-  for (int k = 0; k < ranks_count() && all != NULL && code == DONE; k++) add_slab(table, all + k);
+  for (int k = 0; k < ranks_count() && all != NULL && code == DONE; k++) add_block(table, all + k);
   if (code == DONE) what->steps = own.together;
   free(all);
   return code;
 }
 
-static int foresee_slabs(const share_request *r, slab_cutter *cutter, int processes,
-                         division_table *table, exchange *what)
+static int foresee_blocks(const share_request *r, block_cutter *cutter, int processes,
+                          division_table *table, exchange *what)
 {
-  slab found = {0};
+  block found = {0};
   int code = DONE;
   for (int k = 0; k < processes && code == DONE; k++) {
-    code = measure_slab(cutter, k, processes, r->h, &found);
+    code = measure_block(cutter, k, processes, r->h, &found);
     if (code != DONE) return code;
-    add_slab(table, &found);
+    add_block(table, &found);
     what->steps = found.together;
   }
   return code;
@@ -265,7 +312,7 @@ static int tell(const division_table *table, const dvi_march *march, bool is_for
   char how[HOW_SIZE];
   const char *name = table_text_at(table->rows, 0, 1);
   if (table->what->kind == EXCHANGE_PLANES)
-    (void)snprintf(how, sizeof how, "in slabs of the last axis");
+    (void)snprintf(how, sizeof how, "in blocks");
   else
     (void)snprintf(how, sizeof how, "by %s%s", name, is_foreseen ? " in one process" : "");
   print_sum(table, how);
@@ -277,16 +324,16 @@ int share_tell(const share_request *request, const problem *scene, dvi_march *ma
 {
   exchange what;
   division_table table;
-  slab_cutter *cutter = NULL;
+  block_cutter *cutter = NULL;
   if (ranks_agree(begin(scene, request->method, &what, &table) ? DONE : FAILED) != DONE) {
     table_destroy(&table.rows);
     return FAILED;
   }
   int code = DONE;
   if (what.kind == EXCHANGE_PLANES) {
-    code = ranks_agree(slab_cutter_open(request->path, request->settings, &cutter));
-    if (code == DONE) code = gather_slabs(request, cutter, &table, &what);
-    slab_cutter_close(&cutter);
+    code = ranks_agree(block_cutter_open(request->path, request->settings, &cutter));
+    if (code == DONE) code = gather_blocks(request, cutter, &table, &what);
+    block_cutter_close(&cutter);
   } else {
     code = gather_shares(scene, &table);
   }
@@ -302,13 +349,13 @@ int share_foresee(const share_request *request, const problem *scene, const dvi_
 {
   exchange what;
   division_table table;
-  slab_cutter *cutter = NULL;
+  block_cutter *cutter = NULL;
   if (!begin(scene, request->method, &what, &table)) return FAILED;
   int code = DONE;
   if (what.kind == EXCHANGE_PLANES) {
-    code = slab_cutter_open(request->path, request->settings, &cutter);
-    if (code == DONE) code = foresee_slabs(request, cutter, processes, &table, &what);
-    slab_cutter_close(&cutter);
+    code = block_cutter_open(request->path, request->settings, &cutter);
+    if (code == DONE) code = foresee_blocks(request, cutter, processes, &table, &what);
+    block_cutter_close(&cutter);
   } else {
     code = foresee_mesh(scene, processes, &table);
   }

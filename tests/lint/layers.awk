@@ -55,9 +55,10 @@ BEGIN {
   sees["field/pencil"] = "core field/algebra field/mesh"
   sees["field/model"] = "core num solve field/algebra field/mesh field/forms field/pencil"
   sees["field/step"] = "core num march field/algebra field/mesh field/model"
+  sees["field/implicit"] = sees["field/step"] " field/step"
   sees["field/avi"] = sees["field/step"] " field/forms field/step"
   sees["field/tents"] = sees["field/avi"]
-  sees["field/method"] = sees["field/avi"] " field/avi field/tents"
+  sees["field/method"] = sees["field/avi"] " field/avi field/implicit field/tents"
   sees["field/spectra"] = "core"
   sees["field/multiscale"] = "core num field/algebra"
   sees["field/space"] = "core num num/fft space field/algebra field/mesh field/multiscale"

@@ -108,6 +108,13 @@ dvi_status dvi_mesh_write_divided(const dvi_mesh *mesh, const char *path);
 dvi_status dvi_mesh_read_divided(const char *path, const dvi_division_options *options,
                                  dvi_mesh **share, dvi_division **division);
 
+/** Read the whole mesh of such a file, in a process that needs no others.
+ *
+ *  @param[out] mesh  for dvi_mesh_destroy
+ *
+ *  @retval (all)  as dvi_mesh_read_divided */
+dvi_status dvi_mesh_read_whole(const char *path, dvi_mesh **mesh);
+
 /** Find owners of the n-cells of a mesh, among any number of processes. Few may foresee how many
  *  would share it: the owners are not the ones that dvi_mesh_divide finds on another number of
  *  processes, and there are as many cells and neighbours.
