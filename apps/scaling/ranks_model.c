@@ -65,8 +65,8 @@ bool ranks_model_fit(ranks_bench *b)
   return false;
 }
 
-/* Blocks of a grid are foreseen for each number of ranks. A grid that is longer has slabs, each with
- * a neighbour on both sides. */
+/* Blocks of a grid are foreseen for each number of ranks. A grid that is longer has slabs, each
+ * with a neighbour on both sides. */
 static bool predict_grid(const ranks_bench *b, double ranks, bool is_weak, step_prediction *p)
 {
   const double whole = b->whole.cells, sides = fmin(2, ranks - 1),
