@@ -25,17 +25,16 @@ int share_check(const char *command, const problem *scene, const char *method, b
                        takes_all ? " or of a solid" : "", scene->name);
   if (method == NULL) method = scene->method;
   if (takes_all && !is_solid && method != NULL && strcmp(method, "yee") == 0) return DONE;
-  /* shares of waves have midpoint, too */
-  const bool is_wave = !is_solid && dvi_scene_marches(scene->scene, "midpoint");
+  const bool is_field = !is_solid && dvi_scene_marches(scene->scene, "midpoint");
   if (method != NULL &&
       (is_solid ? dvi_scene_marches(scene->scene, method)
-                : strcmp(method, "leapfrog") == 0 || (is_wave && strcmp(method, "midpoint") == 0)))
+                : strcmp(method, "leapfrog") == 0 || (is_field && strcmp(method, "midpoint") == 0)))
     return DONE;
   return usage_error("%s: %d processes share %s alone, not %s; give --method %s, or leave mpirun "
                      "out",
                      command, ranks_count(),
                      is_solid    ? "avi and verlet"
-                     : is_wave   ? "leapfrog and midpoint"
+                     : is_field  ? "leapfrog, midpoint and, on grids, yee"
                      : takes_all ? "leapfrog and yee"
                                  : "leapfrog",
                      method != NULL ? method : "another method", is_solid ? "avi" : "leapfrog");

@@ -6,6 +6,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "edges.h"
 #include "multigrid.h"
 #include "owners.h"
 #include "vector.h"
@@ -22,9 +23,10 @@ typedef struct solver {
   const dvi__world *world;
   PetscInt *place; /* [unknowns] columns of `A` */
   dvi__operator A;
-  dvi__multigrid *multigrid;
-  double *x, *r;         /* [unknowns] */
-  PetscScalar *diagonal; /* [own] of the Jacobian beside A */
+  dvi__multigrid *multigrid; /* of vertices */
+  dvi__edges *edges;         /* or of edges */
+  double *x, *r;             /* [unknowns] */
+  PetscScalar *diagonal;     /* [own] of the Jacobian beside A */
   SNES snes;
   Mat jacobian;
   Vec solution, residual;
@@ -213,7 +215,7 @@ static PetscErrorCode make_gradients(solver *s)
   PetscCall(KSPSetTolerances(ksp, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT, ITERATIONS));
   PetscCall(KSPSetReusePreconditioner(ksp, PETSC_TRUE));
   PetscCall(KSPGetPC(ksp, &pc));
-  return dvi__multigrid_use(s->multigrid, pc);
+  return s->edges != NULL ? dvi__edges_use(s->edges, pc) : dvi__multigrid_use(s->multigrid, pc);
 }
 
 static PetscErrorCode make_newton(solver *s)
@@ -241,7 +243,10 @@ static PetscErrorCode make(solver *s, const dvi__elliptic *e)
   PetscCall(dvi__place_unknowns(s->world->comm, &unknowns, s->place, &own));
   PetscCall(dvi__operator_of_share(s->world->comm, &unknowns, &e->A, &s->A));
   PetscCall(PetscCalloc1((size_t)own, &s->diagonal));
-  PetscCall(dvi__multigrid_create(&s->A, &s->multigrid));
+  if (e->degree == 0)
+    PetscCall(dvi__multigrid_create(&s->A, &s->multigrid));
+  else
+    PetscCall(dvi__edges_create(&unknowns, &s->A, &s->edges));
   PetscCall(dvi__vector_create(s->A.comm, own, &s->solution));
   PetscCall(VecDuplicate(s->solution, &s->residual));
   PetscCall(make_jacobian(s));
@@ -255,6 +260,7 @@ static void destroy(void *of)
   if (s == NULL) return;
   (void)SNESDestroy(&s->snes);
   (void)dvi__multigrid_destroy(&s->multigrid);
+  (void)dvi__edges_destroy(&s->edges);
   (void)MatDestroy(&s->jacobian);
   (void)VecDestroy(&s->solution);
   (void)VecDestroy(&s->residual);

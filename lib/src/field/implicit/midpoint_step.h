@@ -5,30 +5,40 @@
  *
  * (docs/methods/midpoint.md). The Jacobian is M + h/2 S + h^2/4 (K + w V_uu). All processes solve
  * together (field/model/on_all.h). The energy of a linear field changes by 2 F.M^-1 r, with what is
- * left of the equation. Only factors that halves of h give exactly have it vanish on the mean. */
+ * left of the equation: no factor may be rounded that halves of h do not give exactly.
+ *
+ * Of Maxwell's fields K q = d^T M_{k+1} B, and B = dA has steps of its own, B1 = B0 + 2 d x. So no
+ * rounding grows with A, whose static fields are gradients that grow with time, and F has no charge
+ * but where numbers are added to p. */
 #ifndef DVI_FIELD_IMPLICIT_MIDPOINT_STEP_H
 #define DVI_FIELD_IMPLICIT_MIDPOINT_STEP_H
 #include "field/model/on_all.h"
+#include "field/step/sweep.h"
 
-typedef struct dvi__midpoint_step {
-  const dvi_field *field;
-  double h;
-  dvi__on_all solver;
-  const double *q, *p;               /* [cells] the start */
-  double signal[DVI__CURRENTS];      /* at the middle */
-  double *x, *middle, *force, *work; /* [unknowns] */
-  double *loss;                      /* [unknowns] the diagonal of S, or NULL without one */
-} dvi__midpoint_step;
-
-/* A state at a time, of cells. */
+/* A state at a time. Values of others' cells are refreshed. */
 typedef struct dvi__midpoint_state {
   double t;
-  double *q, *p;     /* [cells] the form, and its momentum. Those of others are refreshed */
+  double *q, *p;     /* [cells] the form, and its momentum */
+  double *B;         /* [faces] of Maxwell's fields */
   double *delivered; /* [currents] integrals of the signals since the start */
 } dvi__midpoint_state;
 
-/* Prepare steps of a length. Called on all processes. On failure nothing is owned. */
-dvi_status dvi__midpoint_step_create(const dvi_field *field, double h, dvi__midpoint_step **made);
+typedef struct dvi__midpoint_step {
+  const dvi_field *field;
+  const dvi__sweep *sweep; /* of Maxwell's fields, or NULL */
+  double h;
+  dvi__on_all solver;
+  const dvi__midpoint_state *from;
+  double signal[DVI__CURRENTS];      /* at the middle */
+  double *x, *middle, *force, *work; /* [unknowns] */
+  double *form, *H;                  /* [cells], [faces] of Maxwell's fields */
+  double *loss;                      /* [unknowns] the diagonal of S, or NULL without one */
+} dvi__midpoint_step;
+
+/* Prepare steps of a length. Maxwell's fields have a sweep, with the weights of all faces. Called
+ * on all processes. On failure nothing is owned. */
+dvi_status dvi__midpoint_step_create(const dvi_field *field, const dvi__sweep *sweep, double h,
+                                     dvi__midpoint_step **made);
 void dvi__midpoint_step_destroy(dvi__midpoint_step **made);
 
 /* Make a step. On failure `to` stays as it was, but where processes could not give each other their

@@ -13,8 +13,8 @@ int dvi_scene_marches(const dvi_scene *scene, const char *method)
   if (method == NULL) return 0;
   if (scene->density != NULL) return dvi__density_marches(scene, method);
   if (dvi__is_elastic(scene)) return dvi__elastic_marches(method);
-  /* Only shares of waves march by midpoint. Whole meshes have it as systems do. */
-  if (dvi__is_share(scene) && strcmp(method, "midpoint") == 0) return scene->field->maxwell == NULL;
+  /* Only shares march by midpoint. Whole meshes have it as systems do. */
+  if (dvi__is_share(scene) && strcmp(method, "midpoint") == 0) return 1;
   const size_t length = strcspn(method, ":");
   const char *name;
   for (int i = 0; (name = dvi_march_method_name(i)) != NULL; i++)
