@@ -40,7 +40,8 @@ int share_check(const char *command, const problem *scene, const char *method, b
                        takes_all ? " or of a solid" : "", scene->name);
   if (method == NULL) method = scene->method;
   if (takes_all && !is_solid && method != NULL && strcmp(method, "yee") == 0) return DONE;
-  const bool is_wave = !is_solid && dvi_scene_marches(scene->scene, "midpoint");
+  const bool is_field = !is_solid && dvi_scene_marches(scene->scene, "midpoint"),
+             is_wave = is_field && dvi_scene_marches(scene->scene, "imex");
   if (method != NULL &&
       (is_solid ? dvi_scene_marches(scene->scene, method) : marches(scene, method)))
     return DONE;
@@ -49,6 +50,7 @@ int share_check(const char *command, const problem *scene, const char *method, b
                      command, ranks_count(),
                      is_solid    ? "avi and verlet"
                      : is_wave   ? "leapfrog, midpoint, imex and galerkin"
+                     : is_field  ? "leapfrog, midpoint and, on grids, yee"
                      : takes_all ? "leapfrog and yee"
                                  : "leapfrog",
                      method != NULL ? method : "another method", is_solid ? "avi" : "leapfrog");

@@ -57,6 +57,16 @@ together 1 'is the state of an integrator, and of no march' kink.yaml --method m
 by 1 kink.yaml --method midpoint --h 0.05 --resume from2.state 2>err && fail "one goes on"
 says err 'it is the state of a march of a field' 'the state of two processes'
 
+# Maxwell's fields by midpoint: the same energy as that of the system on one process.
+for count in 1 2 3; do
+  by $count torus.yaml --method midpoint --h 0.1 --columns energy --out torus$count.csv ||
+    fail "$count processes: no Maxwell by midpoint"
+done
+same torus2.csv torus3.csv "two and three processes by midpoint"
+paste -d , torus1.csv torus3.csv | awk -F , '
+  NR > 1 && ($1 != $3 || ($2 - $4) ^ 2 > 1e-28) { exit 1 }' ||
+  fail "Maxwell by midpoint: $(cat torus3.csv), and of one $(cat torus1.csv)"
+
 # ---- checkpoints ----
 
 # goes_on N M SCENE OPTION...: half of a run by N, and the rest by M, are the whole one.
