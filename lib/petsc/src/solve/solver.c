@@ -10,6 +10,7 @@
 #include "multigrid.h"
 #include "owners.h"
 #include "pair.h"
+#include "traffic.h"
 #include "vector.h"
 
 enum { CORRECTIONS = 25, ITERATIONS = 500 };
@@ -21,7 +22,7 @@ static const double part_left = 1e-9, roundoff = 1e-17, settled = 1e-10;
 
 typedef struct solver {
   dvi__elliptic equations;
-  const dvi__world *world;
+  dvi__world *world;
   PetscInt *place; /* [unknowns] columns of `A` */
   dvi__operator A;
   dvi__multigrid *multigrid; /* of vertices */
@@ -37,6 +38,7 @@ typedef struct solver {
   double first, start; /* energy norms of the first residual, and of the last correction's */
   double size;         /* norm of the unknowns */
   double last, before; /* norms of corrections */
+  dvi__traffic mark;   /* before an iteration */
   int64_t iterations;
   dvi_status status; /* of the functions */
 } solver;
@@ -156,10 +158,19 @@ static PetscErrorCode subtract_means(MatNullSpace kernel, Vec x, void *user)
 
 /* ---- ends ---- */
 
+/* Note what an iteration of conjugate gradients has received. */
+static void note_iteration(solver *s, PetscInt iteration)
+{
+  const dvi__traffic now = dvi__traffic_so_far();
+  if (iteration > 0) s->world->iteration = dvi__traffic_since(now, s->mark);
+  s->mark = now;
+}
+
 static PetscErrorCode end_gradients(KSP ksp, PetscInt iteration, PetscReal norm,
                                     KSPConvergedReason *reason, void *user)
 {
   solver *s = user;
+  note_iteration(s, iteration);
   *reason = KSP_CONVERGED_ITERATING;
   norm *= s->pair.scale;
   if (iteration == 0) s->start = norm;
@@ -344,6 +355,8 @@ static PetscErrorCode run(solver *s, double *x, dvi__elliptic_report *report, in
   PetscCall(SNESGetIterationNumber(s->snes, &corrections));
   PetscCall(SNESGetLinearSolveIterations(s->snes, &iterations));
   PetscCall(VecNorm(s->residual, NORM_2, &residual));
+  s->world->corrections += corrections;
+  s->world->iterations += iterations;
   *is_solved = reason > 0;
   *report = (dvi__elliptic_report){.corrections = (int)corrections,
                                    .iterations = iterations,

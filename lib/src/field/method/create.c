@@ -45,8 +45,10 @@ static dvi_status check_field(const dvi_field *field, const method *found)
 {
   if (field->potential.density != NULL && found < methods + METHODS)
     return dvi__fail(DVI_UNSUPPORTED,
-                     "march: the field has a potential, which marches do not take; verlet and the "
-                     "other methods of dvi_field_system do");
+                     "march: the field has a potential, which %s does not take; %s", found->name,
+                     field->mesh->share != NULL ? "midpoint does"
+                                                : "verlet and the other methods of "
+                                                  "dvi_field_system do");
   return DVI_OK;
 }
 
