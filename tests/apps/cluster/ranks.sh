@@ -63,6 +63,8 @@ together 2 'pvd of a grid is written by one process' grid.yaml --pvd u.pvd
 together 2 'the name ends in .pvd' wave.yaml --pvd u.vtu
 together 2 'is on a mesh of more dimensions' wave.yaml --map u.svg
 
+# ---- implicit methods ----
+
 # By implicit methods any number of processes writes the same rows, which are those of one up to
 # roundoff. Their last step is shorter where h does not divide the time.
 for method in midpoint imex galerkin:degree=2; do
@@ -110,6 +112,15 @@ for scene in 'bar.yaml --method verlet' parts.yaml; do
 done
 says out '^  start: ranks read the mesh in parts' parts.yaml
 says out '^mesh: 324 cells' parts.yaml
+# Maxwell's fields by midpoint: the same energy as that of the system on one process.
+for count in 1 2 3; do
+  by $count torus.yaml --method midpoint --h 0.1 --columns energy --out torus$count.csv ||
+    fail "$count processes: no Maxwell by midpoint"
+done
+same torus2.csv torus3.csv "two and three processes by midpoint"
+paste -d , torus1.csv torus3.csv | awk -F , '
+  NR > 1 && ($1 != $3 || ($2 - $4) ^ 2 > 1e-28) { exit 1 }' ||
+  fail "Maxwell by midpoint: $(cat torus3.csv), and of one $(cat torus1.csv)"
 
 # ---- checkpoints ----
 
@@ -221,7 +232,7 @@ edited() {
   sed "$2" "$1" >edited.yaml
   together 2 "edited.yaml:$3: .*$4" edited.yaml
 }
-edited wave.yaml 's/^method: .*/method: yee/' 7:9 'leapfrog and midpoint alone, not yee; take l'
+edited wave.yaml 's/^method: .*/method: yee/' 7:9 'midpoint, imex and galerkin alone, not yee'
 edited wave.yaml 's/^boundary.*/&\nstar: barycentric/' 6:7 'not diagonal .* take midpoint, the c'
 edited wave.yaml 's/^boundary.*/&\ndamping: 0.1/' 6:10 'takes the friction in one process'
 edited torus.yaml 's/^field.*/&\nstar: whitney/' 3:7 'not diagonal .* take the circumcentric star'
