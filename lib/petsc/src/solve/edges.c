@@ -107,11 +107,11 @@ static PetscErrorCode clear(work *w)
 /* Give the length of an edge along an axis. */
 static double length_along(const work *w, int64_t edge, int axis)
 {
-  const int space = dvi_mesh_space(w->edges->share);
+  const int axes = dvi_mesh_space(w->edges->share);
   const double *point = dvi_mesh_points(w->edges->share), period = w->period[axis];
   double length = 0;
   for (int64_t k = 2 * edge; k < 2 * edge + 2; k++)
-    length += w->d.sign[k] * point[w->d.column[k] * space + axis];
+    length += w->d.sign[k] * point[w->d.column[k] * axes + axis];
   return period > 0 ? length - period * rint(length / period) : length;
 }
 
