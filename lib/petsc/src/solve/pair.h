@@ -13,10 +13,8 @@
 
 typedef struct dvi__pair {
   const dvi__operator *A;
-  PetscScalar *mass, *diagonal; /* [own] M, and that of A */
+  PetscScalar *mass; /* [own] M */
   PetscScalar cosine, sine;
-  PetscReal scale; /* a power of two: the right-hand side in the course of a solution is that much
-                    * larger */
   Mat shown;
   PC cycle; /* for one of the numbers */
   Vec in, out;
@@ -33,8 +31,7 @@ PetscErrorCode dvi__pair_clear(dvi__pair *pair);
 PetscErrorCode dvi__pair_multiply(const dvi__pair *pair, const PetscScalar *D, const PetscScalar *x,
                                   PetscScalar *y);
 
-/* Let a solver of such equations be preconditioned, and have right-hand sides near 1: PETSc's
- * minimal residuals compare with numbers of their own. */
+/* Let a solver of such equations be preconditioned. */
 PetscErrorCode dvi__pair_use(dvi__pair *pair, KSP ksp);
 
 #endif

@@ -10,6 +10,7 @@
 #include "multigrid.h"
 #include "owners.h"
 #include "pair.h"
+#include "scale.h"
 #include "traffic.h"
 #include "vector.h"
 
@@ -28,6 +29,7 @@ typedef struct solver {
   dvi__multigrid *multigrid; /* of vertices */
   dvi__edges *edges;         /* or of edges */
   dvi__pair pair;            /* of equations of pairs */
+  dvi__scale scale;
   int numbers;               /* of each unknown, 1 or 2 */
   double *x, *r;             /* [numbers*unknowns] */
   PetscScalar *diagonal;     /* [numbers*own] of the Jacobian beside A */
@@ -172,7 +174,7 @@ static PetscErrorCode end_gradients(KSP ksp, PetscInt iteration, PetscReal norm,
   solver *s = user;
   note_iteration(s, iteration);
   *reason = KSP_CONVERGED_ITERATING;
-  norm *= s->pair.scale;
+  norm *= s->scale.factor;
   if (iteration == 0) s->start = norm;
   if (s->first == 0) s->first = norm;
   if (!isfinite(norm))
@@ -185,27 +187,42 @@ static PetscErrorCode end_gradients(KSP ksp, PetscInt iteration, PetscReal norm,
   return 0;
 }
 
+/* Set the norms of what Newton's method has come to. PETSc's line search would add up squares of
+ * each process by the BLAS, and the number of corrections could depend on the division. */
+static PetscErrorCode find_norms(solver *s, PetscReal *residual)
+{
+  Vec x, correction;
+  PetscCall(SNESGetSolution(s->snes, &x));
+  PetscCall(SNESGetSolutionUpdate(s->snes, &correction));
+  s->before = s->last;
+  PetscCall(VecNorm(x, NORM_2, &s->size));
+  PetscCall(VecNorm(correction, NORM_2, &s->last));
+  return VecNorm(s->residual, NORM_2, residual);
+}
+
 /* Newton's corrections shrink by the square of what they shrank by before, until conjugate
- * gradients leave more. */
+ * gradients leave more. The norms are PETSc's, of which the last one is right before the first
+ * correction. */
 static PetscErrorCode end_newton(SNES snes, PetscInt iteration, PetscReal size,
                                  PetscReal correction, PetscReal residual,
                                  SNESConvergedReason *reason, void *user)
 {
   solver *s = user;
-  (void)snes;
+  (void)snes, (void)size, (void)correction;
+  if (iteration > 0) PetscCall(find_norms(s, &residual));
   *reason = SNES_CONVERGED_ITERATING;
-  if (!isfinite(residual) || !isfinite(size)) {
+  if (!isfinite(residual) || !isfinite(s->size)) {
     *reason = SNES_DIVERGED_FNORM_NAN;
     return 0;
   }
   if (residual == 0) *reason = SNES_CONVERGED_FNORM_ABS;
   if (iteration == 0) return 0;
-  s->before = s->last;
-  s->last = correction;
-  s->size = size;
   const double shrunk = iteration > 1 ? fmax(s->last / s->before, part_left) : 1;
-  if (shrunk * correction <= DBL_EPSILON * size || (shrunk > 0.5 && correction <= settled * size))
+  if (shrunk * s->last <= DBL_EPSILON * s->size ||
+      (shrunk > 0.5 && s->last <= settled * s->size))
     *reason = SNES_CONVERGED_SNORM_RELATIVE;
+  else if (residual != 0 && iteration == CORRECTIONS)
+    *reason = SNES_DIVERGED_MAX_IT;
   return 0;
 }
 
@@ -247,11 +264,13 @@ static PetscErrorCode make_gradients(solver *s)
   PetscCall(KSPSetConvergenceTest(ksp, end_gradients, s, NULL));
   PetscCall(KSPSetTolerances(ksp, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT, ITERATIONS));
   PetscCall(KSPSetReusePreconditioner(ksp, PETSC_TRUE));
+  PetscCall(dvi__scale_use(&s->scale, ksp));
   PetscCall(KSPGetPC(ksp, &pc));
   if (s->numbers == 2) return dvi__pair_use(&s->pair, ksp);
   return s->edges != NULL ? dvi__edges_use(s->edges, pc) : dvi__multigrid_use(s->multigrid, pc);
 }
 
+/* PETSc evaluates no residual behind the last of its iterations, which therefore is one more. */
 static PetscErrorCode make_newton(solver *s)
 {
   SNESLineSearch search;
@@ -259,11 +278,12 @@ static PetscErrorCode make_newton(solver *s)
   PetscCall(SNESSetType(s->snes, SNESNEWTONLS));
   PetscCall(SNESGetLineSearch(s->snes, &search));
   PetscCall(SNESLineSearchSetType(search, SNESLINESEARCHBASIC));
+  PetscCall(SNESLineSearchSetComputeNorms(search, PETSC_FALSE));
   PetscCall(SNESSetFunction(s->snes, s->residual, evaluate, s));
   PetscCall(SNESSetJacobian(s->snes, s->jacobian, s->jacobian, linearize, s));
   PetscCall(SNESSetConvergenceTest(s->snes, end_newton, s, NULL));
-  PetscCall(SNESSetTolerances(s->snes, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT, CORRECTIONS,
-                              10 * CORRECTIONS));
+  PetscCall(SNESSetTolerances(s->snes, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT,
+                              CORRECTIONS + 1, 10 * CORRECTIONS));
   return make_gradients(s);
 }
 
@@ -277,6 +297,7 @@ static PetscErrorCode make(solver *s, const dvi__elliptic *e)
   PetscCall(dvi__place_unknowns(s->world->comm, &unknowns, s->place, &own));
   PetscCall(dvi__operator_of_share(s->world->comm, &unknowns, &e->A, &s->A));
   PetscCall(PetscCalloc1(numbers * (size_t)own, &s->diagonal));
+  PetscCall(dvi__scale_create(&s->A, &s->scale));
   if (e->degree == 0)
     PetscCall(dvi__multigrid_create(&s->A, &s->multigrid));
   else
@@ -295,6 +316,7 @@ static void destroy(void *of)
   if (s == NULL) return;
   (void)SNESDestroy(&s->snes);
   (void)dvi__pair_clear(&s->pair);
+  (void)dvi__scale_clear(&s->scale);
   (void)dvi__multigrid_destroy(&s->multigrid);
   (void)dvi__edges_destroy(&s->edges);
   (void)MatDestroy(&s->jacobian);
@@ -317,7 +339,6 @@ static dvi_status create(const dvi__elliptic *equations, void *user, void **made
     s->equations = *equations;
     s->world = user;
     s->numbers = equations->mass != NULL ? 2 : 1;
-    s->pair.scale = 1;
     (void)PetscPushErrorHandler(PetscReturnErrorHandler, NULL);
     status = dvi__world_agree(user, dvi__check_petsc(make(s, equations)));
     (void)PetscPopErrorHandler();

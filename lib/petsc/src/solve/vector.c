@@ -56,6 +56,36 @@ static PetscErrorCode sum_of_sizes(Vec x, PetscReal *value)
   return dvi__sum_of_world(PetscObjectComm((PetscObject)x), &sum, value);
 }
 
+/* Where squares vanish or overflow, take those of numbers that a power of two has brought near 1. */
+static PetscErrorCode norm_by_scale(Vec x, PetscReal *value)
+{
+  const PetscScalar *a;
+  PetscReal most;
+  int exponent;
+  dvi__accumulator sum = {.terms = 0};
+  PetscCall(largest(x, &most));
+  *value = most;
+  if (most == 0 || !isfinite(most)) return 0;
+  (void)frexp(most, &exponent);
+  PetscCall(VecGetArrayRead(x, &a));
+  for (PetscInt i = 0; i < x->map->n; i++) {
+    const PetscScalar scaled = ldexp(a[i], -exponent);
+    dvi__accumulate(&sum, scaled * scaled);
+  }
+  PetscCall(VecRestoreArrayRead(x, &a));
+  PetscCall(dvi__sum_of_world(PetscObjectComm((PetscObject)x), &sum, value));
+  *value = ldexp(sqrt(*value), exponent);
+  return 0;
+}
+
+static PetscErrorCode norm_of_squares(Vec x, PetscReal *value)
+{
+  PetscCall(dot(x, x, value));
+  if (*value < 0x1p-900 || isinf(*value)) return norm_by_scale(x, value);
+  *value = sqrt(*value);
+  return 0;
+}
+
 static PetscErrorCode norm(Vec x, NormType type, PetscReal *value)
 {
   if (type == NORM_INFINITY) return largest(x, value);
@@ -64,9 +94,7 @@ static PetscErrorCode norm(Vec x, NormType type, PetscReal *value)
     PetscCall(sum_of_sizes(x, value));
     value++;
   }
-  PetscCall(dot(x, x, value));
-  *value = sqrt(*value);
-  return 0;
+  return norm_of_squares(x, value);
 }
 
 /* ---- sums of vectors, number by number ---- */
