@@ -220,6 +220,11 @@ void ranks_tell(int rank, int degree, mesh_division *division)
   module->tell(rank, degree, division);
 }
 
+void ranks_received(mesh_traffic *traffic)
+{
+  module->count(traffic);
+}
+
 dvi_status ranks_modes(const dvi_field *field, const dvi_modes_options *options, double *eigenvalue,
                        mode_search *search)
 {

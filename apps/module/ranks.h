@@ -58,6 +58,9 @@ const dvi_yee_ranks *ranks_grid(void);
 /** Give the share of process `rank`, of forms of a degree. Called by all processes. */
 void ranks_tell(int rank, int degree, mesh_division *division);
 
+/** Give what this process has received so far. */
+void ranks_received(mesh_traffic *traffic);
+
 /** Find modes of the field on this process's share, as dvi_field_modes does. Called by all. */
 dvi_status ranks_modes(const dvi_field *field, const dvi_modes_options *options, double *eigenvalue,
                        mode_search *search);

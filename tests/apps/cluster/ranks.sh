@@ -28,6 +28,41 @@ same one.csv all.csv "standard output"
 as_one 2 wave.yaml --final --plot all.svg
 [ -s all.svg ] || fail "no plot"
 
+# ---- drawn fields ----
+
+cat >block.yaml <<'SCENE'
+mesh: {generator: kuhn, cells: [2, 2, 2], size: [1, 1, 1], grading: 2}
+field: elastic
+materials: {all: {law: neo-hookean, lambda: 1, mu: 1, rho: 1}}
+initial: {u: "[0, 0, 0]", u': "[0.2*y, -0.1*z, 0.15*x*z]"}
+method: avi
+step: {fraction: 0.5}
+until: 1
+SCENE
+sed 's/^mesh: .*/mesh: {generator: kuhn, cells: [40], size: [1]}/
+  /^ *all:/d; /^materials/d; s/exp(.*)/exp(-30*(x - 0.4)^2)/' wave.yaml >string.yaml
+drawn 2 pvd u.pvd wave.yaml --every 10
+drawn 4 pvd u.pvd block.yaml --every 5
+drawn 3 map u.svg string.yaml
+drawn 2 map u.svg string.yaml --map-of u
+"$dvi" mesh bcc-torus --cells 3,3,3 --size 1,1,1 --write torus.h5 >out || fail "no torus.h5"
+sed 's/^mesh: .*/mesh: {file: torus.h5}/' torus.yaml >parts.yaml
+mkdir parts
+"$dvi" run torus.yaml --every 12 --out rows.csv --pvd field.pvd
+(cd parts && by 3 ../parts.yaml --every 12 --out rows.csv --pvd field.pvd) ||
+  fail "no fields of a mesh in parts"
+for file in field.pvd field_00000*.vtu; do same $file parts/$file "a mesh in parts"; done
+if [ -e "$modules/dvi_hdf5.so" ]; then
+  drawn 3 pvd u.vtkhdf torus.yaml --every 12
+  drawn 2 pvd u.vtkhdf block.yaml --every 5
+  drawn 2 pvd u.vtkhdf wave.yaml --every 10
+  together 1 'cannot write' wave.yaml --out rows.csv --pvd /nowhere/u.vtkhdf
+fi
+together 1 'cannot write' wave.yaml --out rows.csv --pvd /nowhere/u.pvd
+together 2 'pvd of a grid is written by one process' grid.yaml --pvd u.pvd
+together 2 'the name ends in .pvd' wave.yaml --pvd u.vtu
+together 2 'is on a mesh of more dimensions' wave.yaml --map u.svg
+
 # By midpoint any number of processes writes the same rows, which are those of one up to roundoff.
 for count in 1 2 3; do
   by $count kink.yaml --method midpoint --h 0.05 --every 5 >rows$count.csv ||
@@ -38,6 +73,20 @@ paste -d , rows1.csv rows3.csv | awk -F , '
   NR == 1 { if ($1 != $3 || $2 != $4) exit 1; next }
   $1 != $3 || ($2 - $4) ^ 2 > 1e-26 { exit 1 }
   END { if (NR != 6) exit 1 }' || fail "midpoint: $(cat rows3.csv), and of one $(cat rows1.csv)"
+
+# Their last step is shorter where h does not divide the time. The states of one process and of
+# several are other files.
+for count in 1 2; do
+  by $count kink.yaml --method midpoint --h 0.05 --t-end 0.53 --final --out end$count.csv \
+    --checkpoint from$count.state || fail "$count processes: no end by midpoint"
+done
+paste -d , end1.csv end2.csv | awk -F , '
+  NR == 2 && ($1 != 0.53 || $3 != 0.53 || ($2 - $4) ^ 2 > 1e-26) { exit 1 }' ||
+  fail "midpoint ends otherwise: $(cat end2.csv), and of one $(cat end1.csv)"
+together 1 'is the state of an integrator, and of no march' kink.yaml --method midpoint --h 0.05 \
+  --resume from1.state
+by 1 kink.yaml --method midpoint --h 0.05 --resume from2.state 2>err && fail "one goes on"
+says err 'it is the state of a march of a field' 'the state of two processes'
 
 # ---- checkpoints ----
 
@@ -130,7 +179,7 @@ says err '^dvi: run: signal 15 ended the run at t' 'a signal to mpirun'
 
 alone 'MPI knows of 1'
 together 2 'kepler is none' kepler
-together 2 'leapfrog and midpoint alone, not verlet' wave.yaml --method verlet
+together 2 'leapfrog, midpoint, imex and galerkin alone, not verlet' wave.yaml --method verlet
 # The process that owns the stiffest cell speaks.
 together 1 'the step 1 is not below the bound' wave.yaml --h 1
 sed 's/exp(/sqrt(x - 0.5)*exp(/' wave.yaml >nan.yaml

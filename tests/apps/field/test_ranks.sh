@@ -17,6 +17,7 @@ fi
 as_one 3 probes.yaml
 as_one 2 grid.yaml
 as_one 3 solid.yaml
+drawn 3 pvd field.pvd torus.yaml --every 12
 killed 3 1 2
 
 # A mesh that processes read in parts.
