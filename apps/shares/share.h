@@ -7,12 +7,12 @@
 #include "cli/options.h"
 #include "problem.h"
 
-/** Tell if a step of a method solves equations: by midpoint, imex or galerkin, with its options. */
+/** Tell if the steps of a method solve equations: midpoint, imex, galerkin and its options. */
 bool share_is_implicit(const char *method);
 
 /** Check that processes can share a scene by a method, which is NULL for the scene's: leapfrog,
- *  of waves what is implicit, on grids yee, of solids avi and verlet. Returns DONE, or complains and
- *  returns USAGE. */
+ *  of waves what is implicit, on grids yee, of solids avi and verlet. Returns DONE, or complains
+ *  and returns USAGE. */
 int share_check(const char *command, const problem *scene, const char *method, int processes);
 
 /** What is told of shares. */
