@@ -217,7 +217,7 @@ edited wave.yaml 's/^field: .*/space: fem:degree=1\nfields: {u: scalar}\ndensity
   'no densities: run this one in one process'
 sed -e 's/cells: .*/cells: [50]}/' -e 's/{E: .*/{E: x}/' -e '/^ *[es]:/d' -e '/^probes/d' \
   -e '/cpml/d' grid.yaml >line.yaml
-together 2 'yee: a grid of one axis cannot be divided' line.yaml
+together 2 'line.yaml:1:7: yee: a grid of one axis cannot be divided' line.yaml
 together 2 "the probe 'b' is outside of the mesh" outside.yaml
 together 1 "cannot write '/nowhere/rows.csv'" wave.yaml --out /nowhere/rows.csv
 together 1 "cannot write '/nowhere/state'" wave.yaml --checkpoint /nowhere/state
