@@ -12,6 +12,7 @@ typedef struct problem {
 
 /* What the potential does: it is good, fails on the last process, or pushes apart. */
 extern enum mood { GOOD, FAILING, PUSHING } mood;
+extern int slopes; /* how often its derivative was asked for */
 
 dvi_field *make_field(const dvi_mesh *mesh, const problem *p);
 
@@ -27,9 +28,10 @@ uint64_t hash_values(const dvi_mesh *share, const double *u);
 /* Print what must be the same on any number of processes. */
 void tell(const char *what, uint64_t hash, int iterations);
 
-/* Check the motions of a mesh that a partitioner cuts, or failures and orders. */
+/* Check the motions of a mesh that a partitioner cuts, or failures, costs and orders. */
 void check_motions(const dvi_mesh *mesh, const char *partitioner, int is_long);
 void check_failures(void);
+void check_costs(void);
 void check_orders(void);
 
 #endif
