@@ -232,7 +232,7 @@ edited() {
   sed "$2" "$1" >edited.yaml
   together 2 "edited.yaml:$3: .*$4" edited.yaml
 }
-edited wave.yaml 's/^method: .*/method: yee/' 7:9 'midpoint, imex and galerkin alone, not yee'
+edited wave.yaml 's/^method: .*/method: yee/' 7:9 'imex and galerkin alone, not yee; take l'
 edited wave.yaml 's/^boundary.*/&\nstar: barycentric/' 6:7 'not diagonal .* take midpoint, the c'
 edited wave.yaml 's/^boundary.*/&\ndamping: 0.1/' 6:10 'takes the friction in one process'
 edited torus.yaml 's/^field.*/&\nstar: whitney/' 3:7 'not diagonal .* take the circumcentric star'
