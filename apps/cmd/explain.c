@@ -220,8 +220,7 @@ static int check_shares(const explain_request *r, const problem *scene)
 static int open_shares(const explain_request *r, const problem *scene, const char *method,
                        dvi_march **march)
 {
-  if (r->ranks == 0 || !share_is_implicit(method))
-    return open_steps(scene, method, r->h, march);
+  if (r->ranks == 0 || !share_is_implicit(method)) return open_steps(scene, method, r->h, march);
   (void)printf("march: %s, whose steps have no bound\n", method);
   return DONE;
 }
