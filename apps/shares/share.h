@@ -7,7 +7,7 @@
 #include "cli/options.h"
 #include "problem.h"
 
-/** Tell if a step of a method solves equations: by midpoint, imex or galerkin, with its options. */
+/** Tell if the steps of a method solve equations: midpoint, imex, galerkin and its options. */
 bool share_is_implicit(const char *method);
 
 /** Check that processes can share a scene by a method, which is NULL for the scene's: leapfrog,
