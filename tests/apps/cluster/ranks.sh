@@ -17,6 +17,7 @@ as_one 2 probes.yaml
 as_one 4 grid.yaml
 columns=energy,growth,momentum_x,angular_z,tip_z,middle
 as_one 2 solid.yaml --columns $columns
+as_one 3 solid.yaml --columns $columns --threads 2
 as_one 4 solid.yaml --columns $columns --method verlet
 as_one 3 solid.yaml --columns $columns --method avi:classes=no
 sed -e 's/{cpml: 2}/absorbing/' \
