@@ -64,6 +64,8 @@ together 2 'pvd of a grid is written by one process' grid.yaml --pvd u.pvd
 together 2 'the name ends in .pvd' wave.yaml --pvd u.vtu
 together 2 'is on a mesh of more dimensions' wave.yaml --map u.svg
 
+# ---- implicit methods ----
+
 # By implicit methods any number of processes writes the same rows, which are those of one up to
 # roundoff. Their last step is shorter where h does not divide the time.
 for method in midpoint imex galerkin:degree=2; do
@@ -95,6 +97,31 @@ together 1 'is the state of an integrator, and of no march' kink.yaml --method m
   --resume from1.state
 by 1 kink.yaml --method midpoint --h 0.05 --resume from2.state 2>err && fail "one goes on"
 says err 'it is the state of a march of a field' 'the state of two processes'
+
+# ---- steps of more processes ----
+
+# Solids, and meshes that no process reads as a whole.
+"$dvi" mesh bcc-torus --cells 3,3,3 --size 1,1,1 --write torus.h5 >out || fail "no torus.h5"
+sed 's/^mesh: .*/mesh: {file: torus.h5}/' torus.yaml >parts.yaml
+for scene in 'bar.yaml --method verlet' parts.yaml; do
+  # shellcheck disable=SC2086
+  mpirun -np 3 "$dvi" bench $scene --scale ranks=1,2,3,...,40 --rounds 1 --steps 2 \
+    --csv scale.csv >out || fail "$scene: no scaling"
+  awk -F, '$1 == "strong" { rows++; measured += $10 != ""; bad += !($5 > 0 && $6 > 0) }
+    END { exit !(rows >= 8 && measured == 3 && !bad) }' scale.csv ||
+    fail "$scene: $(cat scale.csv)"
+done
+says out '^  start: ranks read the mesh in parts' parts.yaml
+says out '^mesh: 324 cells' parts.yaml
+# Maxwell's fields by midpoint: the same energy as that of the system on one process.
+for count in 1 2 3; do
+  by $count torus.yaml --method midpoint --h 0.1 --columns energy --out torus$count.csv ||
+    fail "$count processes: no Maxwell by midpoint"
+done
+same torus2.csv torus3.csv "two and three processes by midpoint"
+paste -d , torus1.csv torus3.csv | awk -F , '
+  NR > 1 && ($1 != $3 || ($2 - $4) ^ 2 > 1e-28) { exit 1 }' ||
+  fail "Maxwell by midpoint: $(cat torus3.csv), and of one $(cat torus1.csv)"
 
 # ---- checkpoints ----
 
@@ -210,7 +237,7 @@ edited wave.yaml 's/^method: .*/method: yee/' 7:9 'imex and galerkin alone, not 
 edited wave.yaml 's/^boundary.*/&\nstar: barycentric/' 6:7 'not diagonal .* take midpoint, the c'
 edited wave.yaml 's/^boundary.*/&\ndamping: 0.1/' 6:10 'takes the friction in one process'
 edited torus.yaml 's/^field.*/&\nstar: whitney/' 3:7 'not diagonal .* take the circumcentric star'
-edited torus.yaml 's/{E: .*/{B: [0, 0, 1]}/' 5:10 'take a start by A, or one process'
+edited torus.yaml 's/{E: .*/{B: [0, 0, 1]}/' 5:10 'no potential has this field B'
 edited solid.yaml 's/alpha: 0.1/beta: 0.1/' 3:12 'a damping beta .* take one process'
 edited wave.yaml 's/^field: .*/space: fem:degree=1\nfields: {u: scalar}\ndensity: u'"'"'^2\/2/
   /^ *all/d; /^materials/d; s/fixed/free/; s/leapfrog/midpoint/; s/{fraction: 0.5}/0.1/' 4:10 \
