@@ -149,7 +149,8 @@ dvi_status dvi_march_start(dvi_march *march, const dvi_march_state *state);
  *                               then
  *  @retval DVI_CALLBACK_FAILED  a signal failed. The march stands at the last good time
  *  @retval DVI_NOT_FINITE       a signal is not finite, or values are seen not to be. The march
- *                               stands at the last good time */
+ *                               stands at the last good time, or where values of leapfrog have
+ *                               overflowed must be started anew */
 dvi_status dvi_march_advance(dvi_march *march, double t);
 
 /** Return the time. NaN before a start. */
