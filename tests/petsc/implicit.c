@@ -1,6 +1,7 @@
 /* Equations that are solved on the shares of MPI's processes have the same bits for any number of
  * processes and any division, and are the solutions of one process by a factor up to roundoff. It
- * prints hashes, which implicit.sh compares. Usage: mpirun -np N implicit [all] */
+ * prints hashes, which implicit.sh compares, or with `table` the iterations of larger meshes alone.
+ * Usage: mpirun -np N implicit [all|table] */
 #include "implicit.h"
 
 #include <dvi/petsc.h>
@@ -120,6 +121,12 @@ void tell(const char *what, uint64_t hash, int iterations)
   if (rank == 0) (void)printf("%s %016llx %d\n", what, (unsigned long long)hash, iterations);
 }
 
+static void tell_count(const char *mesh, int cells, int iterations)
+{
+  if (rank == 0)
+    (void)printf("%s, %d cells along an axis: %d iterations\n", mesh, cells, iterations);
+}
+
 static void check_problem(const dvi_mesh *mesh, const problem *p, const char *partitioner)
 {
   const dvi_division_options options = {.size = sizeof options, .partitioner = partitioner};
@@ -157,16 +164,15 @@ static void check_mesh(dvi_mesh *mesh, int is_long)
   dvi_mesh_destroy(&mesh);
 }
 
-/* Iterations on a mesh with `cells` along each axis. */
-static int iterations_on(int cells)
+/* Iterations on a generated mesh. */
+static int iterations_on(const char *generator, dvi_generator_options size)
 {
-  const dvi_generator_options size = {.cells = {cells, cells}};
-  dvi_mesh *mesh = generated("kuhn", size), *share;
+  dvi_mesh *mesh = generated(generator, size), *share;
   dvi_division *division;
   dvi_field_solve_report report = {0};
   double *u = calloc((size_t)dvi_mesh_count(mesh, 0), sizeof *u);
-  expect(dvi_mesh_divide(mesh, NULL, &share, &division) == DVI_OK, "no division", "growth");
-  expect(solve(share, &(problem){.is_fixed = 1}, u, &report) == DVI_OK, "no solution", "growth");
+  expect(dvi_mesh_divide(mesh, NULL, &share, &division) == DVI_OK, "no division", generator);
+  expect(solve(share, &(problem){.is_fixed = 1}, u, &report) == DVI_OK, "no solution", generator);
   dvi_mesh_destroy(&share);
   dvi_division_destroy(&division);
   dvi_mesh_destroy(&mesh);
@@ -174,12 +180,28 @@ static int iterations_on(int cells)
   return report.iterations;
 }
 
+static int iterations_of_triangles(int cells)
+{
+  return iterations_on("kuhn", (dvi_generator_options){.cells = {cells, cells}});
+}
+
+/* Print the table of docs/fields/implicit-shares.md. */
+static void print_table(void)
+{
+  for (int n = 20; n <= 320; n *= 2) tell_count("triangles", n, iterations_of_triangles(n));
+  for (int n = 20; n <= 320; n *= 2)
+    tell_count("boxes of 10:1", n,
+               iterations_on("box", (dvi_generator_options){.cells = {n, n}, .extent = {10, 1}}));
+  for (int n = 12; n <= 48; n *= 2)
+    tell_count("cubes", n, iterations_on("box", (dvi_generator_options){.cells = {n, n, n}}));
+}
+
 /* Iterations do not grow with the mesh. */
 static void check_growth(void)
 {
-  const int few = iterations_on(20);
+  const int few = iterations_of_triangles(20);
   for (int cells = 20; cells <= 160; cells *= 2) {
-    const int count = iterations_on(cells);
+    const int count = iterations_of_triangles(cells);
     tell("iterations", (uint64_t)cells, count);
     expect(count <= 18 + 4 && count <= few + 4, "more iterations", "growth");
   }
@@ -192,6 +214,11 @@ int main(int argc, char **argv)
   if (PetscInitialize(&argc, &argv, NULL, NULL) != 0) return 1;
   (void)MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   (void)MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+  if (argc > 1 && strcmp(argv[1], "table") == 0) {
+    print_table();
+    (void)PetscFinalize();
+    return failures > 0;
+  }
   check_mesh(staggered_mesh(18, 20), is_long);
   check_failures();
   check_costs();

@@ -97,6 +97,21 @@ together 1 'is the state of an integrator, and of no march' kink.yaml --method m
 by 1 kink.yaml --method midpoint --h 0.05 --resume from2.state 2>err && fail "one goes on"
 says err 'it is the state of a march of a field' 'the state of two processes'
 
+# ---- steps of more processes ----
+
+# Solids, and meshes that no process reads as a whole.
+"$dvi" mesh bcc-torus --cells 3,3,3 --size 1,1,1 --write torus.h5 >out || fail "no torus.h5"
+sed 's/^mesh: .*/mesh: {file: torus.h5}/' torus.yaml >parts.yaml
+for scene in 'bar.yaml --method verlet' parts.yaml; do
+  # shellcheck disable=SC2086
+  mpirun -np 3 "$dvi" bench $scene --scale ranks=1,2,3,...,40 --rounds 1 --steps 2 \
+    --csv scale.csv >out || fail "$scene: no scaling"
+  awk -F, '$1 == "strong" { rows++; measured += $10 != ""; bad += !($5 > 0 && $6 > 0) }
+    END { exit !(rows >= 8 && measured == 3 && !bad) }' scale.csv ||
+    fail "$scene: $(cat scale.csv)"
+done
+says out '^  start: ranks read the mesh in parts' parts.yaml
+says out '^mesh: 324 cells' parts.yaml
 # Maxwell's fields by midpoint: the same energy as that of the system on one process.
 for count in 1 2 3; do
   by $count torus.yaml --method midpoint --h 0.1 --columns energy --out torus$count.csv ||

@@ -48,6 +48,7 @@ explained 2 deep.yaml
 says out.txt '^3 steps together: all processes receive E and B of 3 planes' deep.yaml
 "$dvi" explain deep.yaml --ranks 2 --csv foreseen.csv >out.txt || fail "blocks are not foreseen"
 same shares.csv foreseen.csv "two slabs, steps together"
+bytes=$(awk -F, 'NR == 2 { printf "%d", $7 / 3 }' shares.csv)
 # 4 slabs of the 9 boxes would be too thin, and so y is divided, too.
 explained 4 grid.yaml
 "$dvi" explain grid.yaml --ranks 4 --csv foreseen.csv >out.txt || fail "blocks are not foreseen"
@@ -71,6 +72,17 @@ awk -F, 'NR == 1 { next }
     if (($7 == 0) != ($3 == 1) || ($10 != "") != measured) bad++
     if ($15 != ($1 == "weak" ? 324 * $3 : 324)) bad++ }
   END { exit !(NR == 13 && !bad) }' scale.csv || fail "bench: $(cat scale.csv)"
+# Blocks of a grid, of which no more are predicted than there can be. What two of them receive in a
+# step is what was counted above.
+"$dvi" bench deep.yaml --scale ranks=1,2,16,...,1024 --rounds 1 --steps 3 --csv slabs.csv \
+  >out.txt || fail "bench: no scaling of grids"
+says out.txt '^Ranks that share deep.yaml, by yee' 'a grid'
+says out.txt '^  more ranks than the grid has blocks for' 'a grid'
+awk -F, -v bytes="$bytes" '$1 == "strong" { rows++; if ($3 == 2 && $9 != bytes) bad++ }
+  END { exit !(rows == 4 && !bad) }' slabs.csv || fail "a grid: $bytes bytes, and $(cat slabs.csv)"
+"$dvi" bench bar.yaml --scale ranks=1,2 >out.txt 2>&1 && fail "steps of avi are timed"
+says out.txt '^dvi: bench: .* steps of solids by verlet.*not those of avi' 'avi'
+
 # What makes no sense is refused before processes start.
 for option in '--scale ranks=1,2 --latency 0' '--scale ranks=1,2 --bandwidth nan' \
   '--scale ranks=2,1' '--scale ranks=1,2 --method avi' '--scale ranks=1,2 --at 1e-6' \
