@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cli/command.h"
+#include "module/ranks.h"
 
 enum { DIGITS = 12 };
 
@@ -24,15 +25,16 @@ int frames_start(frame_list *frames, const char *scene, const dvi_mesh *mesh, co
   if (mesh == NULL)
     return usage_error("run: --pvd is for fields on meshes, and %s has none", scene);
   frames->mesh = mesh;
-  if (ends_with(path, ending_of_one) && store_module(path) == NULL) return FAILED;
+  if (ranks_is_first() && ends_with(path, ending_of_one) && store_module(path) == NULL)
+    return FAILED;
   frames->path = path;
   return DONE;
 }
 
-void frames_move(frame_list *frames, const dvi_mesh *mesh)
+void frames_move(frame_list *frames, const dvi_mesh *mesh, const double *point)
 {
   frames->mesh = mesh;
-  frames->moves = true;
+  frames->point = point;
 }
 
 bool frames_are_wanted(const frame_list *frames)
@@ -70,31 +72,41 @@ static char *next_name(const frame_list *frames)
   return name;
 }
 
-/* Write views as the next file of the list. */
-static bool add_file(frame_list *frames, double t, int views, const dvi_view *view)
+/* List the next file. Returns its path, to be freed, or NULL without memory. */
+static char *next_path(frame_list *frames, double t)
 {
   char *name = frames_grow(frames) ? next_name(frames) : NULL;
-  if (name == NULL) return false;
+  if (name == NULL) return NULL;
   const char *slash = strrchr(frames->path, '/');
   const int folder = slash != NULL ? (int)(slash - frames->path) + 1 : 0;
   char *path = malloc((size_t)folder + strlen(name) + 1);
   frames->time[frames->count] = t;
   frames->name[frames->count++] = name;
-  if (path == NULL) {
+  if (path != NULL)
+    (void)sprintf(path, "%.*s%s", folder, frames->path, name);
+  else
     complain("out of memory");
+  return path;
+}
+
+/* Write views as the next file of the list. */
+static bool add_file(frame_list *frames, double t, int views, const dvi_view *view)
+{
+  char *path = next_path(frames, t);
+  if (ranks_agree(path != NULL ? DONE : FAILED) != DONE) {
+    free(path);
     return false;
   }
-  (void)sprintf(path, "%.*s%s", folder, frames->path, name);
-  const dvi_status status = dvi_mesh_write(frames->mesh, path, views, view);
+  const dvi_status status = stored_views_write(frames->mesh, frames->point, path, views, view);
   free(path);
   return status == DVI_OK || library_error(status) == DONE;
 }
 
 bool frames_add(frame_list *frames, double t, int views, const dvi_view *view)
 {
+  const frame_place place = {frames->path, frames->head, frames->point, t};
   return ends_with(frames->path, ending_of_one)
-             ? stored_views_add(&frames->stored, frames->path, frames->head, frames->mesh,
-                                frames->moves, t, views, view)
+             ? stored_views_add(&frames->stored, &place, frames->mesh, views, view)
              : add_file(frames, t, views, view);
 }
 

@@ -9,8 +9,8 @@
 
 /** The files so far. All zero without any. */
 typedef struct frame_list {
-  const dvi_mesh *mesh; /**< of all views, or of the next ones if it moves */
-  bool moves;
+  const dvi_mesh *mesh;  /**< of all views, or of the next ones if it moves */
+  const double *point;   /**< its points, if it moves, otherwise NULL */
   const char *path;      /**< of the list of files, FILE.pvd, or of the only one, FILE.vtkhdf */
   const hdf5_head *head; /**< of FILE.vtkhdf */
   stored_views stored;   /**< that file */
@@ -23,13 +23,14 @@ typedef struct frame_list {
  * returns the exit code. */
 int frames_start(frame_list *frames, const char *scene, const dvi_mesh *mesh, const char *path);
 
-/** Take the mesh of the next views, which has moved. */
-void frames_move(frame_list *frames, const dvi_mesh *mesh);
+/** Take the mesh of the next views, and its points [vertices*space], which have moved. */
+void frames_move(frame_list *frames, const dvi_mesh *mesh, const double *point);
 
 /** Return whether views are written. */
 bool frames_are_wanted(const frame_list *frames);
 
-/** Write views at a time. Complains and returns false if that fails. */
+/** Write views at a time. Of several processes all call it with those of their shares, and the
+ * first one writes. Complains and returns false if that fails, on all of them. */
 bool frames_add(frame_list *frames, double t, int views, const dvi_view *view);
 
 /** Write the list of all files, or close the only one. Complains and returns false if that

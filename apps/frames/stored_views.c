@@ -7,14 +7,23 @@
 #include <unistd.h>
 
 #include "cli/command.h"
+#include "module/ranks.h"
 
 static const char place_name[] = "vertex";
+
+dvi_status stored_views_write(const dvi_mesh *mesh, const double *point, const char *path,
+                              int views, const dvi_view *view)
+{
+  return point != NULL ? dvi_mesh_write_moved(mesh, point, path, views, view)
+                       : dvi_mesh_write(mesh, path, views, view);
+}
 
 /* ---- the grid ---- */
 
 /* Read the grid back from a .vtu file, as which the library writes meshes: where space repeats
  * itself the grid has more points than the mesh. A field has the number of each point's vertex. */
-static bool read_grid(const char *temporary, const dvi_mesh *mesh, vtu_grid *grid)
+static bool read_grid(const char *temporary, const dvi_mesh *mesh, const double *point,
+                      vtu_grid *grid)
 {
   const int64_t vertices = dvi_mesh_count(mesh, 0);
   double *number = calloc((size_t)vertices + 1, sizeof *number);
@@ -24,7 +33,7 @@ static bool read_grid(const char *temporary, const dvi_mesh *mesh, vtu_grid *gri
   }
   for (int64_t i = 0; i < vertices; i++) number[i] = (double)i;
   const dvi_view place = {place_name, number, 1, 0};
-  const dvi_status status = dvi_mesh_write(mesh, temporary, 1, &place);
+  const dvi_status status = stored_views_write(mesh, point, temporary, 1, &place);
   const bool good = status == DVI_OK ? vtu_read(temporary, grid) == DONE
                                      : library_error(status) == DONE;
   (void)unlink(temporary);
@@ -32,17 +41,23 @@ static bool read_grid(const char *temporary, const dvi_mesh *mesh, vtu_grid *gri
   return good;
 }
 
-static bool make_grid(const char *path, const dvi_mesh *mesh, vtu_grid *grid)
+/* Name a file beside the path, to be freed. Complains and returns NULL without memory. */
+static char *name_beside(const char *path)
 {
   const size_t size = strlen(path) + sizeof ".grid-.vtu" + 24;
-  char *temporary = malloc(size);
-  vtu_clear(grid);
-  if (temporary == NULL) {
+  char *name = malloc(size);
+  if (name != NULL)
+    (void)snprintf(name, size, "%s.grid-%ld.vtu", path, (long)getpid());
+  else
     complain("out of memory");
-    return false;
-  }
-  (void)snprintf(temporary, size, "%s.grid-%ld.vtu", path, (long)getpid());
-  const bool good = read_grid(temporary, mesh, grid);
+  return name;
+}
+
+static bool make_grid(const frame_place *place, const dvi_mesh *mesh, vtu_grid *grid)
+{
+  char *temporary = name_beside(place->path);
+  vtu_clear(grid);
+  const bool good = temporary != NULL && read_grid(temporary, mesh, place->point, grid);
   free(temporary);
   return good;
 }
@@ -100,14 +115,11 @@ static bool create(stored_views *stored, const char *path, const hdf5_head *head
   return stored->frames != NULL || store_refuse(path);
 }
 
-bool stored_views_add(stored_views *stored, const char *path, const hdf5_head *head,
-                      const dvi_mesh *mesh, bool moves, double t, int views, const dvi_view *view)
+/* Write fields, on the grid if it is new or has moved. */
+static bool add(stored_views *stored, const frame_place *place, bool has_grid, int views,
+                const hdf5_field *field)
 {
-  const hdf5_module *module = store_module(path);
-  const bool has_grid = moves || stored->frames == NULL;
-  if (module == NULL || (has_grid && !make_grid(path, mesh, &stored->grid))) return false;
-  hdf5_field *field = make_fields(&stored->grid, dvi_mesh_count(mesh, 0), views, view);
-  if (field == NULL) return false;
+  const hdf5_module *module = store_module(place->path);
   const vtu_grid *drawn = &stored->grid;
   const hdf5_grid grid = {.points = drawn->points,
                           .cells = drawn->cells,
@@ -115,12 +127,77 @@ bool stored_views_add(stored_views *stored, const char *path, const hdf5_head *h
                           .type = (int)drawn->kind,
                           .point = drawn->point,
                           .vertex = drawn->vertex};
-  const bool good = create(stored, path, head, &grid, views, field) &&
-                    (module->add_frame(stored->frames, t, has_grid ? &grid : NULL, field) ||
-                     store_refuse(path));
-  free_fields(views, view, field);
+  const bool good = create(stored, place->path, place->head, &grid, views, field) &&
+                    (module->add_frame(stored->frames, place->t, has_grid ? &grid : NULL, field) ||
+                     store_refuse(place->path));
   /* With its first views the file comes to its place, where it grows. */
   return good && (stored->file.stream == NULL || file_keep(&stored->file));
+}
+
+static bool add_whole(stored_views *stored, const frame_place *place, const dvi_mesh *mesh,
+                      int views, const dvi_view *view)
+{
+  const bool has_grid = place->point != NULL || stored->frames == NULL;
+  if (has_grid && !make_grid(place, mesh, &stored->grid)) return false;
+  hdf5_field *field = make_fields(&stored->grid, dvi_mesh_count(mesh, 0), views, view);
+  const bool good = field != NULL && add(stored, place, has_grid, views, field);
+  free_fields(views, view, field);
+  return good;
+}
+
+/* ---- several processes ---- */
+
+static bool read_rows(const hdf5_field *field, int64_t first, int64_t rows, double *value)
+{
+  return vtu_read_rows(field->of, field->is_by_cell, field->name, first, rows, value);
+}
+
+/* Add what a .vtu file has, block by block. */
+static bool copy_views(stored_views *stored, const frame_place *place, const char *from, int views,
+                       const dvi_view *view)
+{
+  const bool has_grid = place->point != NULL || stored->frames == NULL;
+  hdf5_field *field = calloc((size_t)views + 1, sizeof *field);
+  vtu_file *file = field != NULL ? vtu_open(from) : NULL;
+  if (field == NULL) complain("out of memory");
+  for (int i = 0; i < views && field != NULL; i++)
+    field[i] = (hdf5_field){.name = view[i].name,
+                            .components = view[i].components,
+                            .is_by_cell = view[i].degree > 0,
+                            .read = read_rows,
+                            .of = file};
+  const bool good = file != NULL && (!has_grid || vtu_read_grid(file, &stored->grid)) &&
+                    add(stored, place, has_grid, views, field);
+  vtu_clear(&stored->grid);
+  vtu_close(&file);
+  free(field);
+  return good;
+}
+
+/* The first process gathers the views in a file beside its place, because it may have no memory
+ * for those of the whole mesh. */
+static bool add_shares(stored_views *stored, const frame_place *place, const dvi_mesh *mesh,
+                       int views, const dvi_view *view)
+{
+  char *temporary = name_beside(place->path);
+  if (ranks_agree(temporary != NULL ? DONE : FAILED) != DONE) {
+    free(temporary);
+    return false;
+  }
+  const dvi_status status = stored_views_write(mesh, place->point, temporary, views, view);
+  bool good = status == DVI_OK || library_error(status) == DONE;
+  if (ranks_is_first()) {
+    good = good && copy_views(stored, place, temporary, views, view);
+    (void)unlink(temporary);
+  }
+  free(temporary);
+  return ranks_agree(good ? DONE : FAILED) == DONE;
+}
+
+bool stored_views_add(stored_views *stored, const frame_place *place, const dvi_mesh *mesh,
+                      int views, const dvi_view *view)
+{
+  return (ranks_count() > 1 ? add_shares : add_whole)(stored, place, mesh, views, view);
 }
 
 bool stored_views_close(stored_views *stored, const char *path)

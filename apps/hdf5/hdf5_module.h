@@ -57,7 +57,10 @@ typedef struct hdf5_field {
   const char *name;
   int components;
   bool is_by_cell;
-  const double *value; /**< [points or cells][components] */
+  const double *value; /**< [points or cells][components]. Or else: */
+  /** Give rows of the values, which are asked for in their order. */
+  bool (*read)(const struct hdf5_field *field, int64_t first, int64_t rows, double *value);
+  const void *of;
 } hdf5_field;
 
 /** A file with the group VTKHDF, an unstructured grid with fields that change. */

@@ -7,8 +7,8 @@
 #include "hdf5/head.h"
 
 /* Rows of a chunk: of arrays with a row for each step, and at most of large arrays, which have
- * those of a step. */
-enum { STEPS_AT_ONCE = 256, CHUNK_MOST = 8192 };
+ * those of a step. Fields are written some chunks at a time. */
+enum { STEPS_AT_ONCE = 256, CHUNK_MOST = 8192, ROWS_AT_ONCE = 8 * CHUNK_MOST };
 
 static const char steps_name[] = "NSteps";
 
@@ -223,6 +223,28 @@ static bool add_grid(hdf5_frames *frames, const hdf5_grid *grid)
          h5_array_append(&frames->array[POINTS], grid->points, grid->point);
 }
 
+/* Append some rows of a field, which `room` is for if they are not in memory. */
+static bool add_rows(h5_array *array, const hdf5_field *field, int64_t first, int64_t rows,
+                     double *room)
+{
+  const double *value = field->value != NULL ? field->value + first * field->components : room;
+  if (field->value == NULL && !field->read(field, first, rows, room))
+    return h5_refuse("the values of '%s' cannot be read", field->name);
+  return h5_array_append(array, rows, value);
+}
+
+static bool add_field(h5_array *array, const hdf5_field *field, int64_t rows)
+{
+  const int64_t most = rows < ROWS_AT_ONCE ? rows : ROWS_AT_ONCE;
+  double *room = field->value == NULL ? calloc((size_t)(most * field->components), sizeof *room)
+                                      : NULL;
+  bool good = field->value != NULL || room != NULL || h5_refuse("out of memory");
+  for (int64_t first = 0; first < rows && good; first += most)
+    good = add_rows(array, field, first, rows - first < most ? rows - first : most, room);
+  free(room);
+  return good;
+}
+
 static bool add_fields(hdf5_frames *frames, const hdf5_field *field)
 {
   const int64_t cells = (int64_t)frames->array[TYPES].size[0];
@@ -230,8 +252,7 @@ static bool add_fields(hdf5_frames *frames, const hdf5_field *field)
   for (int i = 0; i < frames->fields && good; i++) {
     const int64_t begin = (int64_t)frames->field[i].size[0];
     good = h5_array_append(&frames->field_offset[i], 1, &begin) &&
-           h5_array_append(&frames->field[i], field[i].is_by_cell ? cells : frames->points,
-                           field[i].value);
+           add_field(&frames->field[i], &field[i], field[i].is_by_cell ? cells : frames->points);
   }
   return good;
 }

@@ -130,22 +130,6 @@ static void widen(int n, int rank, int64_t count, const double *from, double *to
       to[k * all + (rank == 1 ? i : i / n * 3 + i % n)] = from[k * own + i];
 }
 
-static dvi_status displace_mesh(const dvi_mesh *mesh, const double *u, double *point,
-                                dvi_mesh **made)
-{
-  const int n = dvi_mesh_dimension(mesh);
-  int width;
-  const double *X = dvi_mesh_points(mesh);
-  for (int64_t k = 0; k < dvi_mesh_count(mesh, 0) * n; k++) point[k] = X[k] + u[k];
-  const dvi_mesh_terms terms = {.size = sizeof terms,
-                                .dimension = n,
-                                .points = dvi_mesh_count(mesh, 0),
-                                .point = point,
-                                .cells = dvi_mesh_count(mesh, n),
-                                .vertex = dvi_mesh_vertices(mesh, n, &width)};
-  return dvi_mesh_create(&terms, made);
-}
-
 /* The stresses of all cells. von Mises' is not known of every law. */
 static dvi_status add_stresses(const dvi_elastic *solid, const double *u, double *work,
                                elastic_views *views, double *to)
@@ -174,19 +158,20 @@ int elastic_views_make(const problem *scene, const double *u, const double *velo
   views->value = calloc((size_t)(9 * vertices + 19 * cells), sizeof *views->value);
   if (views->value == NULL) return out_of_memory();
   double *const speed = views->value + 3 * vertices, *const work = speed + 3 * vertices,
-                *const stress = work + 3 * vertices + 9 * cells;
+                *const stress = work + 9 * cells;
+  views->point = stress + 10 * cells;
   widen(n, 1, vertices, u, views->value);
   widen(n, 1, vertices, velocity, speed);
   views->view[0] = (dvi_view){"u", views->value, 3, 0};
   views->view[1] = (dvi_view){"velocity", speed, 3, 0};
-  dvi_status status = displace_mesh(mesh, u, work, &views->mesh);
-  if (status == DVI_OK) status = add_stresses(solid, u, work, views, stress);
+  const double *X = dvi_mesh_points(mesh);
+  for (int64_t k = 0; k < vertices * n; k++) views->point[k] = X[k] + u[k];
+  const dvi_status status = add_stresses(solid, u, work, views, stress);
   return status == DVI_OK ? DONE : library_error(status);
 }
 
 void elastic_views_clear(elastic_views *views)
 {
-  dvi_mesh_destroy(&views->mesh);
   free(views->value);
   views->value = NULL;
 }

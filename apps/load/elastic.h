@@ -16,10 +16,10 @@ void elastic_tell_cost(const problem *scene, const char *method, double fraction
 
 enum { ELASTIC_VIEWS = 4 };
 
-/** The displaced mesh, whose nodes stand at X + u, with displacements and velocities at the nodes,
- * and Cauchy's and von Mises' stresses in the cells. */
+/** The places X + u of the nodes, with displacements and velocities there, and Cauchy's and von
+ * Mises' stresses in the cells. */
 typedef struct elastic_views {
-  dvi_mesh *mesh;
+  double *point; /**< [vertices*n] */
   int count;
   dvi_view view[ELASTIC_VIEWS];
   double *value;

@@ -10,23 +10,24 @@
 
 #include "cli/command.h"
 
-enum { PREFIX = 8, WORD = 24 };
+/* The description of an array takes about 100 bytes. */
+enum { PREFIX = 8, WORD = 24, HEAD_MOST = 1 << 20 };
 
-/* A file in memory. */
-typedef struct vtu_file {
+/* A file, whose arrays are read when they are wanted. */
+struct vtu_file {
   const char *path;
-  char *text;
+  FILE *stream;
   size_t size;
+  char *text;       /* its begin, with the description */
   const char *head; /* end of the description */
   size_t bytes;     /* begin of the arrays */
-} vtu_file;
+};
 
-/* An array's description, and its bytes. */
+/* An array's description, and the place of its bytes. */
 typedef struct vtu_array {
   char name[VTU_NAME], type[WORD];
   long components;
-  const char *at;
-  size_t size;
+  size_t at, size;
 } vtu_array;
 
 static bool refuse(const vtu_file *file, const char *reason)
@@ -39,18 +40,24 @@ static bool refuse(const vtu_file *file, const char *reason)
 
 static bool load(const char *path, vtu_file *file)
 {
-  FILE *stream = fopen(path, "rb");
   long size = -1;
-  *file = (vtu_file){.path = path};
-  if (stream != NULL && fseek(stream, 0, SEEK_END) == 0) size = ftell(stream);
-  if (size >= 0 && fseek(stream, 0, SEEK_SET) == 0) {
-    file->text = calloc((size_t)size + 1, 1);
-    if (file->text != NULL) file->size = fread(file->text, 1, (size_t)size, stream);
+  *file = (vtu_file){.path = path, .stream = fopen(path, "rb")};
+  if (file->stream != NULL && fseek(file->stream, 0, SEEK_END) == 0) size = ftell(file->stream);
+  if (size >= 0 && fseek(file->stream, 0, SEEK_SET) == 0) {
+    const size_t begin = size < HEAD_MOST ? (size_t)size : HEAD_MOST;
+    file->size = (size_t)size;
+    file->text = calloc(begin + 1, 1);
+    if (file->text != NULL && fread(file->text, 1, begin, file->stream) == begin) return true;
   }
-  const bool good = file->text != NULL && file->size == (size_t)size && !ferror(stream);
-  if (!good) complain("%s: cannot be read: %s", path, strerror(errno != 0 ? errno : EIO));
-  if (stream != NULL) (void)fclose(stream);
-  return good;
+  complain("%s: cannot be read: %s", path, strerror(errno != 0 ? errno : EIO));
+  return false;
+}
+
+static bool read_bytes(const vtu_file *file, size_t at, size_t count, void *bytes)
+{
+  return (fseek(file->stream, (long)at, SEEK_SET) == 0 &&
+          fread(bytes, 1, count, file->stream) == count) ||
+         refuse(file, "it is cut short");
 }
 
 /* Find where the description ends and the arrays begin. */
@@ -94,10 +101,10 @@ static bool attribute_number(const char *tag, const char *name, long *number)
   return errno == 0 && end != word && *end == '\0' && *number >= 0;
 }
 
-static size_t size_of_prefix(const char *at)
+static size_t size_of_prefix(const unsigned char *prefix)
 {
   size_t size = 0;
-  for (int i = PREFIX - 1; i >= 0; i--) size = size << 8 | (unsigned char)at[i];
+  for (int i = PREFIX - 1; i >= 0; i--) size = size << 8 | prefix[i];
   return size;
 }
 
@@ -105,6 +112,7 @@ static size_t size_of_prefix(const char *at)
 static bool take_array(const vtu_file *file, const char *tag, vtu_array *array)
 {
   long offset;
+  unsigned char prefix[PREFIX];
   if (!attribute(tag, "Name", array->name, sizeof array->name) ||
       !attribute(tag, "type", array->type, sizeof array->type) ||
       !attribute_number(tag, "NumberOfComponents", &array->components) ||
@@ -113,22 +121,21 @@ static bool take_array(const vtu_file *file, const char *tag, vtu_array *array)
   const size_t room = file->size - file->bytes;
   if ((size_t)offset > room || room - (size_t)offset < PREFIX)
     return refuse(file, "it is cut short");
-  array->at = file->text + file->bytes + offset + PREFIX;
-  array->size = size_of_prefix(array->at - PREFIX);
+  array->at = file->bytes + (size_t)offset + PREFIX;
+  if (!read_bytes(file, array->at - PREFIX, PREFIX, prefix)) return false;
+  array->size = size_of_prefix(prefix);
   return array->size <= room - (size_t)offset - PREFIX || refuse(file, "it is cut short");
 }
 
-/* Copy an array of numbers of 8 bytes, as this machine has them. Frees nothing. */
-static bool copy_numbers(const vtu_file *file, const vtu_array *array, const char *type,
+/* Read an array of numbers of 8 bytes, as this machine has them. */
+static bool read_numbers(const vtu_file *file, const vtu_array *array, const char *type,
                          int64_t count, void *numbers)
 {
-  unsigned char *to = numbers;
   const uint16_t probe = 1;
   if (strcmp(array->type, type) != 0 || array->size != 8 * (size_t)count)
     return refuse(file, "an array has another size or type");
   if (*(const unsigned char *)&probe != 1) return refuse(file, "this machine is big-endian");
-  memcpy(to, array->at, array->size);
-  return true;
+  return read_bytes(file, array->at, array->size, numbers);
 }
 
 /* ---- arrays ---- */
@@ -216,7 +223,7 @@ static bool take_field(const vtu_file *file, const vtu_array *array, bool is_by_
   if (array->size != 8 * (size_t)numbers) return refuse(file, "an array has another size or type");
   double *all = calloc((size_t)numbers + 1, sizeof *all);
   if (all == NULL) complain("out of memory");
-  const bool good = all != NULL && copy_numbers(file, array, "Float64", numbers, all) &&
+  const bool good = all != NULL && read_numbers(file, array, "Float64", numbers, all) &&
                     vtu_add_fields(g, array->name, is_by_cell, (int)array->components, all);
   free(all);
   return good;
@@ -270,20 +277,29 @@ const char *vtu_flaw(const vtu_grid *g)
 }
 
 /* All cells are of one kind. */
+static bool take_kinds(const vtu_file *file, const unsigned char *kind, vtu_grid *g)
+{
+  for (int64_t c = 0; c < g->cells; c++)
+    if (kind[c] != kind[0]) return refuse(file, "its cells are of several kinds");
+  if (vtu_corners(kind[0]) == 0)
+    return refuse(file, "its cells are no lines, triangles, pixels, tetrahedra or voxels");
+  g->kind = (vtu_cell)kind[0];
+  g->corners = vtu_corners(kind[0]);
+  return true;
+}
+
 static bool take_kind(const vtu_file *file, vtu_grid *g)
 {
   vtu_array types;
   if (!find_array(file, "Cells", "types", &types)) return false;
   if (types.size != (size_t)g->cells || strcmp(types.type, "UInt8") != 0)
     return refuse(file, "it has not one type for each cell");
-  const int kind = (unsigned char)types.at[0];
-  for (int64_t c = 0; c < g->cells; c++)
-    if (types.at[c] != types.at[0]) return refuse(file, "its cells are of several kinds");
-  if (vtu_corners(kind) == 0)
-    return refuse(file, "its cells are no lines, triangles, pixels, tetrahedra or voxels");
-  g->kind = (vtu_cell)kind;
-  g->corners = vtu_corners(kind);
-  return true;
+  unsigned char *kind = calloc((size_t)g->cells, 1);
+  if (kind == NULL) complain("out of memory");
+  const bool good = kind != NULL && read_bytes(file, types.at, types.size, kind) &&
+                    take_kinds(file, kind, g);
+  free(kind);
+  return good;
 }
 
 static bool take_cells(const vtu_file *file, vtu_grid *g)
@@ -299,24 +315,73 @@ static bool take_cells(const vtu_file *file, vtu_grid *g)
     complain("out of memory");
     return false;
   }
-  if (!copy_numbers(file, &points, "Float64", 3 * g->points, g->point) ||
-      !copy_numbers(file, &connectivity, "Int64", corners, g->vertex))
+  if (!read_numbers(file, &points, "Float64", 3 * g->points, g->point) ||
+      !read_numbers(file, &connectivity, "Int64", corners, g->vertex))
     return false;
   const char *flaw = vtu_flaw(g);
   return flaw == NULL || refuse(file, flaw);
+}
+
+static void close_file(vtu_file *file)
+{
+  if (file->stream != NULL) (void)fclose(file->stream);
+  free(file->text);
+}
+
+static bool take_grid(const vtu_file *file, vtu_grid *g)
+{
+  memset(g, 0, sizeof *g);
+  return take_counts(file, g) && take_kind(file, g) && take_cells(file, g);
 }
 
 int vtu_read(const char *path, vtu_grid *g)
 {
   vtu_file file;
   memset(g, 0, sizeof *g);
-  const bool good = load(path, &file) && split(&file) && take_counts(&file, g) &&
-                    take_kind(&file, g) && take_cells(&file, g) &&
+  const bool good = load(path, &file) && split(&file) && take_grid(&file, g) &&
                     take_fields(&file, "PointData", false, g) &&
                     take_fields(&file, "CellData", true, g);
-  free(file.text);
+  close_file(&file);
   if (!good) vtu_clear(g);
   return good ? DONE : FAILED;
+}
+
+/* ---- files in parts ---- */
+
+vtu_file *vtu_open(const char *path)
+{
+  vtu_file *file = calloc(1, sizeof *file);
+  if (file == NULL) complain("out of memory");
+  if (file != NULL && load(path, file) && split(file)) return file;
+  if (file != NULL) close_file(file);
+  free(file);
+  return NULL;
+}
+
+bool vtu_read_grid(const vtu_file *file, vtu_grid *g)
+{
+  if (take_grid(file, g)) return true;
+  vtu_clear(g);
+  return false;
+}
+
+bool vtu_read_rows(const vtu_file *file, bool is_by_cell, const char *name, int64_t first,
+                   int64_t rows, double *number)
+{
+  vtu_array array;
+  if (!find_array(file, is_by_cell ? "CellData" : "PointData", name, &array)) return false;
+  const size_t row = 8 * (size_t)array.components, begin = (size_t)first * row,
+               bytes = (size_t)rows * row;
+  if (begin > array.size || bytes > array.size - begin)
+    return refuse(file, "an array has another size or type");
+  return read_bytes(file, array.at + begin, bytes, number);
+}
+
+void vtu_close(vtu_file **file)
+{
+  if (*file != NULL) close_file(*file);
+  free(*file);
+  *file = NULL;
 }
 
 const vtu_field *vtu_find(const vtu_grid *g, const char *name)

@@ -37,6 +37,22 @@ typedef struct vtu_grid {
 /** Read a file. Returns DONE, or complains and returns FAILED. */
 int vtu_read(const char *path, vtu_grid *g);
 
+/** A file that is read in parts. */
+typedef struct vtu_file vtu_file;
+
+/** Open a file, whose path lasts as long. Complains and returns NULL if that fails. */
+vtu_file *vtu_open(const char *path);
+
+/** Read the grid without fields. Complains and returns false if that fails. */
+bool vtu_read_grid(const vtu_file *file, vtu_grid *g);
+
+/** Read rows of the values at the points or in the cells: numbers [rows][components]. Complains and
+ * returns false if that fails. */
+bool vtu_read_rows(const vtu_file *file, bool is_by_cell, const char *name, int64_t first,
+                   int64_t rows, double *number);
+
+void vtu_close(vtu_file **file);
+
 /** Add numbers [points or cells][components] as a field, and the components of vectors as fields,
  * too, as far as there is room. Complains and returns false without memory. */
 bool vtu_add_fields(vtu_grid *g, const char *name, bool is_by_cell, int components,

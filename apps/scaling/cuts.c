@@ -6,7 +6,7 @@
 
 #include "cli/command.h"
 #include "load/field.h"
-#include "load/stand_in.h"
+#include "shares/stand_in.h"
 #include "module/ranks.h"
 
 enum { TRIES = 8 /* parts with the largest surface that are cut out of all */ };
@@ -50,6 +50,7 @@ static dvi_status cut_largest(const dvi_mesh *mesh, int degree, const int *owner
                               mesh_cut *cut, dvi_mesh **largest)
 {
   const int parts = (int)cut->parts;
+  const form_of_share form = {.degree = degree};
   dvi_status status = count_surfaces(mesh, owner, surface);
   for (int i = 0; i < parts && i < TRIES && status == DVI_OK; i++) {
     const dvi_ranks ranks = stand_in(take_largest(parts, surface), parts);
@@ -57,7 +58,7 @@ static dvi_status cut_largest(const dvi_mesh *mesh, int degree, const int *owner
     dvi_mesh *share = NULL;
     mesh_division division = {.owned = 0};
     status = dvi_mesh_cut(mesh, owner, &ranks, &share);
-    if (status == DVI_OK && !stand_in_count(share, degree, ranks.rank, parts, &division))
+    if (status == DVI_OK && !stand_in_count(share, &form, ranks.rank, parts, &division))
       status = DVI_NO_MEMORY;
     cut->share = fmax(cut->share, (double)(division.owned + division.ghosts));
     cut->bytes = fmax(cut->bytes, (double)division.bytes_in);

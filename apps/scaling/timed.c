@@ -6,7 +6,7 @@
 #include "cli/command.h"
 #include "load/open_march.h"
 #include "load/scene.h"
-#include "load/share.h"
+#include "shares/share.h"
 #include "module/ranks.h"
 #include "study/clock.h"
 
@@ -17,7 +17,7 @@ int timed_open(const timed_request *request, const dvi_scene_division *division,
   dvi_march_facts facts;
   *timed = (timed_march){.h = (double)NAN};
   int code = scene_open_share(request->scene, request->settings, division, &timed->scene);
-  if (code == DONE) code = share_check("bench", timed->scene, "leapfrog", false);
+  if (code == DONE) code = share_check("bench", timed->scene, "leapfrog", ranks_count());
   if (code == DONE) code = open_march(timed->scene, &options, &timed->march);
   if (code != DONE) return code;
   dvi_march_facts_of(timed->march, &facts);

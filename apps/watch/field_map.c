@@ -8,6 +8,7 @@
 #include "load/density.h"
 #include "load/elastic.h"
 #include "load/field.h"
+#include "module/ranks.h"
 
 static int out_of_memory(void)
 {
@@ -104,20 +105,34 @@ static int compare_places(const void *first, const void *second)
 }
 
 /* Order the vertices along the line. */
-static bool sort_vertices(field_map *m, const double *point)
+static void sort_vertices(field_map *m, const double **list)
 {
   const size_t count = (size_t)m->vertices;
-  const double **list = calloc(count, sizeof *list);
-  m->order = calloc(count, sizeof *m->order);
-  m->place = calloc(2 * count, sizeof *m->place);
-  const bool good = list != NULL && m->order != NULL && m->place != NULL;
-  for (size_t i = 0; i < count && good; i++) list[i] = point + i;
-  if (good) qsort(list, count, sizeof *list, compare_places);
-  for (size_t i = 0; i < count && good; i++) {
-    m->order[i] = (int)(list[i] - point);
+  for (size_t i = 0; i < count; i++) list[i] = m->whole + i;
+  qsort(list, count, sizeof *list, compare_places);
+  for (size_t i = 0; i < count; i++) {
+    m->order[i] = (int)(list[i] - m->whole);
     m->place[i] = *list[i];
   }
+}
+
+/* Take the vertices of the line, of which other processes have some. Complains and returns false if
+ * that fails, on all of them. */
+static bool take_vertices(field_map *m, const dvi_mesh *mesh)
+{
+  if (!line_values_start(&m->line, mesh)) return false;
+  const size_t count = (size_t)m->line.vertices;
+  const double **list = calloc(count, sizeof *list);
+  m->vertices = m->line.vertices;
+  m->U = calloc((size_t)dvi_mesh_count(mesh, 0), sizeof *m->U);
+  m->order = calloc(count, sizeof *m->order);
+  m->place = calloc(3 * count, sizeof *m->place);
+  bool good = m->U != NULL && list != NULL && m->order != NULL && m->place != NULL && take_state(m);
+  if (ranks_agree(good ? DONE : out_of_memory()) != DONE) good = false;
   m->ascend = good ? m->place + count : NULL;
+  m->whole = good ? m->ascend + count : NULL;
+  good = good && line_values_gather(&m->line, dvi_mesh_points(mesh), m->whole);
+  if (good) sort_vertices(m, list);
   free(list);
   return good;
 }
@@ -132,10 +147,7 @@ static int start_wave(field_map *m, const dvi_field *field, const char *name)
     return usage_error("run: --map-of %s: a wave on a mesh shows u alone", name);
   m->axis = "x";
   (void)strcpy(m->shown.name, "u");
-  m->vertices = dvi_mesh_count(mesh, 0);
-  m->U = calloc((size_t)m->vertices, sizeof *m->U);
-  if (m->U == NULL || !take_state(m) || !sort_vertices(m, dvi_mesh_points(mesh)))
-    return out_of_memory();
+  if (!take_vertices(m, mesh)) return FAILED;
   return space_map_start(&m->map, m->place[0], m->place[m->vertices - 1]) ? DONE : FAILED;
 }
 
@@ -163,6 +175,7 @@ int field_map_start(field_map *m, const problem *scene, const char *path, const 
 void field_map_clear(field_map *m)
 {
   space_map_clear(&m->map);
+  line_values_clear(&m->line);
   free(m->x);
   free(m->q);
   free(m->U);
@@ -191,7 +204,8 @@ static bool put_wave(field_map *m, const double *q, double *row)
   const space_map *map = &m->map;
   const dvi_status status = dvi_field_lift(dvi_scene_field(m->scene->scene), q, m->U);
   if (status != DVI_OK) return library_error(status) == DONE;
-  for (int64_t i = 0; i < m->vertices; i++) m->ascend[i] = m->U[m->order[i]];
+  if (!line_values_gather(&m->line, m->U, m->whole)) return false;
+  for (int64_t i = 0; i < m->vertices; i++) m->ascend[i] = m->whole[m->order[i]];
   for (int64_t i = 0, right = 1; i < map->width; i++) {
     const double x = map->from + (map->to - map->from) * (double)i / (map->width - 1);
     while (right + 1 < m->vertices && m->place[right] < x) right++;
@@ -221,7 +235,8 @@ bool field_map_add_march(field_map *m, const dvi_march *march)
   const bool needs_p = m->vertices == 0 && m->shown.kind == QUANTITY_RATE;
   const dvi_status status = dvi_scene_march_state(m->scene->scene, march, m->q,
                                                   needs_p ? m->p : NULL);
-  return status == DVI_OK ? put(m, t, m->q, m->p, row) : library_error(status) == DONE;
+  return ranks_agree(status == DVI_OK ? DONE : library_error(status)) == DONE &&
+         put(m, t, m->q, m->p, row);
 }
 
 bool field_map_draw(const field_map *m)

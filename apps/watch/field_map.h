@@ -6,6 +6,7 @@
 
 #include "load/quantity.h"
 #include "plot/space_map.h"
+#include "watch/line_values.h"
 
 /** A map so far. All zero without one. */
 typedef struct field_map {
@@ -19,9 +20,11 @@ typedef struct field_map {
   double *q, *p, *v; /**< a state, and its velocities */
   double *U, *rate;  /**< coefficients and rates of a density's fields, or values at vertices, or of
                           all components at the places x on a mesh that moves */
-  int64_t vertices;  /**< of the mesh of a field without a density, else 0 */
+  int64_t vertices;  /**< of the whole mesh of a field without a density, else 0 */
+  line_values line;  /**< which gives their values */
   int *order;        /**< [vertices] along the axis */
-  double *place, *ascend; /**< [vertices] places along the axis, and values */
+  double *place, *ascend, *whole; /**< [vertices] places along the axis, and values in their order
+                                     and in the mesh's */
 } field_map;
 
 /** Prepare a map of a quantity, by default that of quantity_choose, or no map if the path is NULL.

@@ -61,14 +61,14 @@ static int refuse_options(const run_request *r)
               {r->how.control != NULL, "step-control"}};
   if (r->verify)
     return usage_error(
-        "run: --verify is for mechanical methods such as midpoint; compare the rows of "
+        "run: --verify is for mechanical methods such as midpoint%s; compare the rows of "
         "%s, a march of a field, with those of --h at half the step",
-        r->method);
+        ranks_count() > 1 ? " in one process" : "", r->method);
   for (size_t i = 0; i < sizeof list / sizeof *list; i++)
     if (list[i].given)
-      return usage_error("run: --%s is for mechanical methods such as midpoint; %s is a march of a "
-                         "field",
-                         list[i].name, r->method);
+      return usage_error("run: --%s is for mechanical methods such as midpoint%s; %s is a march of "
+                         "a field",
+                         list[i].name, ranks_count() > 1 ? " in one process" : "", r->method);
   if (!isnan(r->h) && !(r->h > 0))
     return usage_error("run: --h %g: a march of a field goes forward", r->h);
   if (!isnan(r->t_end) && !(r->t_end >= 0))
@@ -161,10 +161,10 @@ static bool write_solid(journey *j)
   elastic_views now = {.count = 0};
   dvi_status status = dvi_march_sample(j->march, DVI_FORM_A, 0, NULL, u);
   if (status == DVI_OK) status = dvi_march_sample(j->march, DVI_FORM_E, 0, NULL, velocity);
-  if (status != DVI_OK) return library_error(status) == DONE;
+  if (ranks_agree(status == DVI_OK ? DONE : library_error(status)) != DONE) return false;
   for (int64_t i = 0; i < numbers; i++) velocity[i] = -velocity[i];
-  bool good = elastic_views_make(j->scene, u, velocity, &now) == DONE;
-  frames_move(&j->frames, now.mesh);
+  bool good = ranks_agree(elastic_views_make(j->scene, u, velocity, &now)) == DONE;
+  frames_move(&j->frames, j->frames.mesh, now.point);
   good = good && frames_add(&j->frames, dvi_march_time(j->march), now.count, now.view);
   elastic_views_clear(&now);
   return good;
@@ -186,7 +186,7 @@ static bool write_frame(journey *j)
     status = dvi_march_sample(j->march, DVI_FORM_A, 0, NULL, j->vector);
   else if (status == DVI_OK)
     status = dvi_scene_vectors(scene, j->march, DVI_FORM_B, B);
-  if (status != DVI_OK) return library_error(status) == DONE;
+  if (ranks_agree(status == DVI_OK ? DONE : library_error(status)) != DONE) return false;
   return frames_add(&j->frames, dvi_march_time(j->march), is_wave ? 1 : 2,
                     is_wave ? &value : vectors);
 }
@@ -312,6 +312,11 @@ static int travel(journey *j)
 static int start_frames(journey *j)
 {
   const dvi_mesh *mesh = dvi_scene_mesh(j->scene->scene);
+  dvi_march_facts facts;
+  dvi_march_facts_of(j->march, &facts);
+  if (ranks_count() > 1 && strcmp(facts.method, "yee") == 0)
+    return usage_error("run: --pvd of a grid is written by one process alone; leave it out, or "
+                       "mpirun, or take --method leapfrog");
   const int code = frames_start(&j->frames, j->scene->name, mesh, j->request->pvd);
   if (code != DONE) return code;
   const dvi_density *density = density_of(j->scene);
@@ -378,6 +383,7 @@ int field_run(run_request *request, const problem *scene)
   if (code == DONE) code = field_columns_choose(&j.columns, scene, j.march, request->columns);
   if (code == DONE && request->pvd != NULL) code = start_frames(&j);
   if (code == DONE) code = field_map_start(&j.map, scene, request->map, request->map_of);
+  code = ranks_agree(code);
   run_tell_checkpoint(request, NULL, NULL);
   j.caught = signals_note(run_ended_again);
   if (code == DONE) code = write_files(&j);

@@ -77,7 +77,7 @@ static bool recorder_write_nodes(recorder *r, const dvi_integrator *integrator)
   const double t = dvi_integrator_time(integrator);
   moving_views now;
   bool good = moving_views_make(r->scene, t, dvi_integrator_q(integrator), &now) == DONE;
-  frames_move(&r->frames, now.mesh);
+  frames_move(&r->frames, now.mesh, dvi_mesh_points(now.mesh));
   good = good && frames_add(&r->frames, t, now.count, now.view);
   moving_views_clear(&now);
   return good;
@@ -90,7 +90,7 @@ static bool recorder_write_solid(recorder *r, const dvi_integrator *integrator)
   elastic_views now;
   bool good = elastic_views_of_state(r->scene, t, dvi_integrator_q(integrator),
                                      dvi_integrator_p(integrator), &now) == DONE;
-  frames_move(&r->frames, now.mesh);
+  frames_move(&r->frames, r->frames.mesh, now.point);
   good = good && frames_add(&r->frames, t, now.count, now.view);
   elastic_views_clear(&now);
   return good;

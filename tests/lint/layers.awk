@@ -102,12 +102,13 @@ BEGIN {
   uses["study"] = "cli csv plot"
   uses["mechanics"] = uses["study"] " study load"
   uses["store"] = "cli csv load hdf5 module"
+  uses["shares"] = "cli csv load module"
   uses["bench"] = uses["mechanics"] " mechanics"
-  uses["scaling"] = uses["bench"] " bench module"
+  uses["scaling"] = uses["bench"] " bench module shares"
   uses["frames"] = "cli plot picture hdf5 module"
   uses["watch"] = uses["bench"] " picture hdf5 module store frames"
   uses["view"] = "cli csv load picture module"
-  uses["cmd"] = uses["watch"] " module watch bench scaling sweep boundary varied view"
+  uses["cmd"] = uses["watch"] " module watch bench scaling shares sweep boundary varied view"
   uses["main.c"] = "cli"
   # Single headers of other rooms that a room may include.
   also["reference solve/sundials.h"] = 1

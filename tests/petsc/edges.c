@@ -220,8 +220,8 @@ static void fill_B(const dvi_mesh *mesh, const dvi_field *field, double *B)
   dvi__release(A);
 }
 
-/* A potential of B is that of one process, which has no charge, and a B without one is refused. On a
- * torus roundings leave a field that is neither a curl nor a gradient. */
+/* A potential of B is that of one process, which has no charge, and a B without one is refused. On
+ * a torus roundings leave a field that is neither a curl nor a gradient. */
 static void check_potential(dvi_mesh *mesh, maker *make, double most, const char *name)
 {
   dvi_mesh *share;

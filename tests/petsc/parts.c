@@ -159,12 +159,22 @@ static void check_division(const dvi_mesh *mesh, const whole_run *whole, const c
   dvi_division_destroy(&division);
 }
 
+/* Each process reads the whole mesh, too. */
+static void check_whole(const dvi_mesh *mesh)
+{
+  dvi_mesh *read = NULL;
+  expect(dvi_mesh_read_whole(path, &read) == DVI_OK, "not read", "whole file");
+  expect(read != NULL && compare_meshes(mesh, read) == 0, "another mesh", "whole file");
+  dvi_mesh_destroy(&read);
+}
+
 /* The mesh is destroyed. `make` is NULL if there is no field on it. */
 static void check_mesh(dvi_mesh *mesh, dvi_field *(*make)(const dvi_mesh *mesh))
 {
   whole_run whole = {.make = make};
   if (make != NULL) run_whole(mesh, &whole);
   write_file(mesh);
+  check_whole(mesh);
   check_division(mesh, make != NULL ? &whole : NULL, "blocks");
   check_division(mesh, make != NULL ? &whole : NULL, "ptscotch");
   if (make != NULL) whole_run_clear(&whole);

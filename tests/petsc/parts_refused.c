@@ -63,6 +63,24 @@ static void refuse_changed(const char *name, hid_t type, hsize_t count, const vo
   refuse(path, status, word);
 }
 
+/* Give a part the name of another one, as long as its own. */
+static int rename_part(const char *name, const char *text)
+{
+  const hid_t file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT),
+              set = H5Dopen2(file, name, H5P_DEFAULT), type = H5Dget_type(set);
+  const int good = H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text) >= 0;
+  (void)H5Tclose(type);
+  (void)H5Dclose(set);
+  return H5Fclose(file) >= 0 && good;
+}
+
+static void refuse_names(void)
+{
+  write_mesh();
+  expect(rank > 0 || rename_part("parts/3/name", "core"), "parts/3/name", "changed");
+  refuse(path, DVI_BAD_FILE, "parts 2 and 3 both are \"core\"");
+}
+
 static void refuse_changes(void)
 {
   const int beyond[3] = {0, 1, 1000}, before[3] = {0, 1, -1}, twice[3] = {1, 1, 2},
@@ -137,6 +155,7 @@ void check_refused_parts(void)
   refuse_share();
   refuse_memory();
   refuse_changes();
+  refuse_names();
   refuse_cut();
   if (rank == 0) (void)unlink(path);
 }

@@ -189,14 +189,27 @@ dvi_status dvi_mesh_read(const char *path, const dvi_mesh_read_options *options,
  *
  *  An old file is replaced as a whole, or stays if the new one cannot be written.
  *
+ *  Of a share, a .vtu file has the whole mesh, byte for byte, and the views' values at the cells
+ *  that each process owns. All processes call the function, and the first one writes. No process
+ *  holds the whole mesh.
+ *
  *  @param views  number of views. Only a .vtu file has them
  *  @param view   [views]
  *  @retval DVI_BAD_OPTION    the name's end is none of these
  *  @retval DVI_BAD_ARGUMENT  a view is not as described
- *  @retval DVI_UNSUPPORTED   the format cannot hold such a mesh, or views
+ *  @retval DVI_UNSUPPORTED   the format cannot hold such a mesh, or views, or a share
  *  @retval DVI_IO_ERROR      the file could not be written
- *  @retval DVI_NO_MEMORY     there is no memory for the file */
+ *  @retval DVI_NO_MEMORY     there is no memory for the file
+ *  @retval DVI_CALLBACK_FAILED  the processes of a share cannot speak with each other */
 dvi_status dvi_mesh_write(const dvi_mesh *mesh, const char *path, int views, const dvi_view *view);
+
+/** Write a mesh as dvi_mesh_write, with its vertices at other points [vertices*space], of a share
+ *  those of all of its vertices. The cells have the orientation of the mesh.
+ *
+ *  @retval DVI_BAD_ARGUMENT  a coordinate is not finite
+ *  @retval (others)          as dvi_mesh_write */
+dvi_status dvi_mesh_write_moved(const dvi_mesh *mesh, const double *point, const char *path,
+                                int views, const dvi_view *view);
 
 /** Write a list of files at their times, a .pvd file, which ParaView opens as one series.
  *

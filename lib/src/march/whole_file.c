@@ -11,6 +11,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "core/memory.h"
 #include "core/status.h"
 
 /* Create a new file beside path, with a unique name. The process number in the name excludes other
@@ -57,10 +58,10 @@ static int write_all(int descriptor, const unsigned char *bytes, size_t count)
   return 0;
 }
 
-/* Write, flush and close. Return 0 or the first error number. */
-static int write_and_close(int descriptor, const unsigned char *bytes, size_t count)
+/* Flush and close. Return 0 or the first error number. */
+static int flush_and_close(int descriptor)
 {
-  int reason = write_all(descriptor, bytes, count) != 0 || fsync(descriptor) != 0 ? errno : 0;
+  int reason = fsync(descriptor) != 0 ? errno : 0;
   if (close(descriptor) != 0 && reason == 0) reason = errno;
   return reason;
 }
@@ -80,25 +81,81 @@ static int flush_folder(const char *path)
   return reason;
 }
 
-dvi_status dvi__write_whole(const char *link, const unsigned char *bytes, size_t count)
+struct dvi__whole_file {
+  int descriptor, reason; /* the first error number, or 0 */
+  const char *link;       /* the name of the call, in `text` */
+  char path[PATH_MAX], beside[PATH_MAX + 64], text[];
+};
+
+static dvi_status open_beside(dvi__whole_file *file)
 {
-  char beside[PATH_MAX + 64], real[PATH_MAX];
-  const char *path = realpath(link, real) != NULL ? real : link;
-  if (is_no_file(path))
-    return dvi__fail(DVI_IO_ERROR, "cannot write %s: it is not a regular file", link);
-  const int descriptor = create_beside(path, sizeof beside, beside);
-  if (descriptor < 0)
-    return dvi__fail(DVI_IO_ERROR, "cannot write a file beside %.256s: %s", link, strerror(errno));
-  take_rights(descriptor, path);
-  int reason = write_and_close(descriptor, bytes, count);
-  if (reason == 0 && rename(beside, path) != 0) reason = errno;
-  if (reason != 0) {
-    (void)unlink(beside);
-    return dvi__fail(DVI_IO_ERROR, "cannot write %s: %s", link, strerror(reason));
+  if (realpath(file->link, file->path) == NULL)
+    (void)snprintf(file->path, sizeof file->path, "%s", file->link);
+  if (is_no_file(file->path))
+    return dvi__fail(DVI_IO_ERROR, "cannot write %s: it is not a regular file", file->link);
+  file->descriptor = create_beside(file->path, sizeof file->beside, file->beside);
+  if (file->descriptor < 0)
+    return dvi__fail(DVI_IO_ERROR, "cannot write a file beside %.256s: %s", file->link,
+                     strerror(errno));
+  take_rights(file->descriptor, file->path);
+  return DVI_OK;
+}
+
+dvi_status dvi__whole_begin(const char *path, dvi__whole_file **file)
+{
+  const size_t size = strlen(path) + 1;
+  dvi__whole_file *made = dvi__allocate(sizeof *made + size, 1);
+  *file = NULL;
+  if (made == NULL) return dvi__fail(DVI_NO_MEMORY, "%.300s: no memory for the file", path);
+  made->link = memcpy(made->text, path, size);
+  const dvi_status status = open_beside(made);
+  if (status == DVI_OK)
+    *file = made;
+  else
+    dvi__release(made);
+  return status;
+}
+
+void dvi__whole_put(dvi__whole_file *file, const unsigned char *bytes, size_t count)
+{
+  if (file->reason == 0 && write_all(file->descriptor, bytes, count) != 0) file->reason = errno;
+}
+
+/* Move a file to its place. */
+static dvi_status keep(dvi__whole_file *file)
+{
+  const int closed = flush_and_close(file->descriptor);
+  if (file->reason == 0) file->reason = closed;
+  if (file->reason == 0 && rename(file->beside, file->path) != 0) file->reason = errno;
+  if (file->reason != 0) {
+    (void)unlink(file->beside);
+    return dvi__fail(DVI_IO_ERROR, "cannot write %s: %s", file->link, strerror(file->reason));
   }
-  reason = flush_folder(path);
+  const int reason = flush_folder(file->path);
   return reason == 0
              ? DVI_OK
-             : dvi__fail(DVI_IO_ERROR, "%s is written, but its folder cannot be flushed: %s", link,
-                         strerror(reason));
+             : dvi__fail(DVI_IO_ERROR, "%s is written, but its folder cannot be flushed: %s",
+                         file->link, strerror(reason));
+}
+
+dvi_status dvi__whole_end(dvi__whole_file **file, dvi_status status)
+{
+  if (*file == NULL) return status;
+  if (status == DVI_OK) {
+    status = keep(*file);
+  } else {
+    (void)close((*file)->descriptor);
+    (void)unlink((*file)->beside);
+  }
+  dvi__release(*file);
+  *file = NULL;
+  return status;
+}
+
+dvi_status dvi__write_whole(const char *path, const unsigned char *bytes, size_t count)
+{
+  dvi__whole_file *file;
+  DVI_TRY(dvi__whole_begin(path, &file));
+  dvi__whole_put(file, bytes, count);
+  return dvi__whole_end(&file, DVI_OK);
 }

@@ -15,6 +15,10 @@ as_one 3 torus.yaml --columns energy,gauss,e
 as_one 4 box.yaml --every 5
 as_one 2 probes.yaml
 as_one 4 grid.yaml
+columns=energy,growth,momentum_x,angular_z,tip_z,middle
+as_one 2 solid.yaml --columns $columns
+as_one 4 solid.yaml --columns $columns --method verlet
+as_one 3 solid.yaml --columns $columns --method avi:classes=no
 sed -e 's/{cpml: 2}/absorbing/' \
   -e 's/^  s: .*/  s: {of: B, at: [0.9, 0.9, 0.9], along: [0, 0, 1]}/' grid.yaml >walls.yaml
 as_one 3 walls.yaml --columns energy,gauss,charge,divergence,e,s
@@ -24,8 +28,42 @@ same one.csv all.csv "standard output"
 as_one 2 wave.yaml --final --plot all.svg
 [ -s all.svg ] || fail "no plot"
 
+# ---- drawn fields ----
+
+cat >block.yaml <<'SCENE'
+mesh: {generator: kuhn, cells: [2, 2, 2], size: [1, 1, 1], grading: 2}
+field: elastic
+materials: {all: {law: neo-hookean, lambda: 1, mu: 1, rho: 1}}
+initial: {u: "[0, 0, 0]", u': "[0.2*y, -0.1*z, 0.15*x*z]"}
+method: avi
+step: {fraction: 0.5}
+until: 1
+SCENE
+sed 's/^mesh: .*/mesh: {generator: kuhn, cells: [40], size: [1]}/
+  /^ *all:/d; /^materials/d; s/exp(.*)/exp(-30*(x - 0.4)^2)/' wave.yaml >string.yaml
+drawn 2 pvd u.pvd wave.yaml --every 10
+drawn 4 pvd u.pvd block.yaml --every 5
+drawn 3 map u.svg string.yaml
+drawn 2 map u.svg string.yaml --map-of u
+"$dvi" mesh bcc-torus --cells 3,3,3 --size 1,1,1 --write torus.h5 >out || fail "no torus.h5"
+sed 's/^mesh: .*/mesh: {file: torus.h5}/' torus.yaml >parts.yaml
+mkdir parts
+"$dvi" run torus.yaml --every 12 --out rows.csv --pvd field.pvd
+(cd parts && by 3 ../parts.yaml --every 12 --out rows.csv --pvd field.pvd) ||
+  fail "no fields of a mesh in parts"
+for file in field.pvd field_00000*.vtu; do same $file parts/$file "a mesh in parts"; done
+if [ -e "$modules/dvi_hdf5.so" ]; then
+  drawn 3 pvd u.vtkhdf torus.yaml --every 12
+  drawn 2 pvd u.vtkhdf block.yaml --every 5
+  drawn 2 pvd u.vtkhdf wave.yaml --every 10
+  together 1 'cannot write' wave.yaml --out rows.csv --pvd /nowhere/u.vtkhdf
+fi
+together 1 'cannot write' wave.yaml --out rows.csv --pvd /nowhere/u.pvd
+together 2 'pvd of a grid is written by one process' grid.yaml --pvd u.pvd
+together 2 'the name ends in .pvd' wave.yaml --pvd u.vtu
+together 2 'is on a mesh of more dimensions' wave.yaml --map u.svg
+
 # By midpoint any number of processes writes the same rows, which are those of one up to roundoff.
-{ cat wave.yaml; echo 'potential: 1 - cos(u)'; } >kink.yaml
 for count in 1 2 3; do
   by $count kink.yaml --method midpoint --h 0.05 --every 5 >rows$count.csv ||
     fail "$count processes: no rows by midpoint"
@@ -59,6 +97,14 @@ same torus2.csv torus3.csv "two and three processes by midpoint"
 paste -d , torus1.csv torus3.csv | awk -F , '
   NR > 1 && ($1 != $3 || ($2 - $4) ^ 2 > 1e-28) { exit 1 }' ||
   fail "Maxwell by midpoint: $(cat torus3.csv), and of one $(cat torus1.csv)"
+
+# A start by B has a potential.
+{
+  sed -e '/^probes/,/^  e:/d' -e '/^sources/,/ring/d' -e 's/left: absorbing/left: pec/' box.yaml
+  echo 'initial: {B: [x*(1-x)*(1-2*y), -(1-2*x)*y*(1-y), 0]}'
+} >curl.yaml
+as_one 2 curl.yaml
+by 2 curl.yaml --method midpoint --h 0.1 --final >out || fail 'no start from B by midpoint'
 
 # ---- checkpoints ----
 
@@ -95,6 +141,7 @@ every_way() {
 }
 every_way wave.yaml --h 0.002 --every 4
 every_way grid.yaml --h 0.01 --every 5
+every_way solid.yaml --h 0.004 --every 5 --method verlet
 every_way torus.yaml --h 0.004 --every 5
 together 1 'cannot read' wave.yaml --resume nowhere
 together 2 'half.state. stands at t = ' torus.yaml --h 0.004 --t-end 0.1 --resume half.state
@@ -150,13 +197,35 @@ says err '^dvi: run: signal 15 ended the run at t' 'a signal to mpirun'
 
 alone 'MPI knows of 1'
 together 2 'kepler is none' kepler
-together 2 'leapfrog, midpoint and, on grids, yee alone, not verlet' wave.yaml --method verlet
+together 2 'leapfrog, midpoint, imex and galerkin alone, not verlet' wave.yaml --method verlet
 # The process that owns the stiffest cell speaks.
 together 1 'the step 1 is not below the bound' wave.yaml --h 1
 sed 's/exp(/sqrt(x - 0.5)*exp(/' wave.yaml >nan.yaml
 sed 's/0.9, 0.13/3, 4/' probes.yaml >outside.yaml
 together 2 'the start is not finite at vertex' nan.yaml # on one process, on which the others wait
-together 2 '--method yee: several processes share yee on grids' wave.yaml --method yee
+together 2 'run: 2 processes share yee alone, not avi; take yee, or' grid.yaml --method avi
+together 2 'run: 2 processes share avi and verlet alone, not tents; take avi, or' solid.yaml \
+  --method tents
+together 2 'kink.yaml:7:9: march: the field has a potential, .*; midpoint does' kink.yaml
+together 2 '--method yee: several processes share yee on grids' torus.yaml --method yee
+together 2 'run: --alarm is for mechanical methods such as midpoint in one process' wave.yaml \
+  --alarm energy=1
+
+# edited SCENE EDIT PLACE WORDS: processes refuse an edited scene at a place.
+edited() {
+  sed "$2" "$1" >edited.yaml
+  together 2 "edited.yaml:$3: .*$4" edited.yaml
+}
+edited wave.yaml 's/^method: .*/method: yee/' 7:9 'imex and galerkin alone, not yee; take l'
+edited wave.yaml 's/^boundary.*/&\nstar: barycentric/' 6:7 'not diagonal .* take midpoint, the c'
+edited wave.yaml 's/^boundary.*/&\ndamping: 0.1/' 6:10 'takes the friction in one process'
+edited torus.yaml 's/^field.*/&\nstar: whitney/' 3:7 'not diagonal .* take the circumcentric star'
+edited torus.yaml 's/{E: .*/{B: [0, 0, 1]}/' 5:10 'no potential has this field B'
+edited torus.yaml 's/^method: .*/method: imex/' 8:9 'leapfrog, midpoint and yee alone, not imex'
+edited solid.yaml 's/alpha: 0.1/beta: 0.1/' 3:12 'a damping beta .* take one process'
+edited wave.yaml 's/^field: .*/space: fem:degree=1\nfields: {u: scalar}\ndensity: u'"'"'^2\/2/
+  /^ *all/d; /^materials/d; s/fixed/free/; s/leapfrog/midpoint/; s/{fraction: 0.5}/0.1/' 4:10 \
+  'no densities: run this one in one process'
 sed -e 's/cells: .*/cells: [50]}/' -e 's/{E: .*/{E: x}/' -e '/^ *[es]:/d' -e '/^probes/d' \
   -e '/cpml/d' grid.yaml >line.yaml
 together 2 'yee: a grid of one axis cannot be divided' line.yaml

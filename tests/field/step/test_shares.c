@@ -133,8 +133,73 @@ START_TEST(a_step_that_is_too_long_is_refused_with_the_sentence_of_one_process)
 }
 END_TEST
 
+static int keep_values(int degree, double *values, void *user)
+{
+  (void)degree, (void)values, (void)user;
+  return 0;
+}
+
+static int keep_sums(int count, int64_t *number, void *user)
+{
+  (void)count, (void)number, (void)user;
+  return 0;
+}
+
+static int keep_largest(int count, double *number, void *user)
+{
+  (void)count, (void)number, (void)user;
+  return 0;
+}
+
+/* Cut the second half out of a mesh. */
+static dvi_status cut_half(const dvi_mesh *mesh, dvi_mesh **half)
+{
+  const dvi_ranks ranks = {.size = sizeof ranks,
+                           .rank = 1,
+                           .count = 2,
+                           .refresh = keep_values,
+                           .sum = keep_sums,
+                           .largest = keep_largest};
+  int owner[64];
+  divide(64, 2, 0, owner);
+  return dvi_mesh_cut(mesh, owner, &ranks, half);
+}
+
+/* The share of one process is cut as the whole mesh is. Others, of which cells are missing, are
+ * refused. */
+static void cut_again(const dvi_mesh *share, int rank, void *user)
+{
+  const dvi_mesh *half = user;
+  dvi_mesh *again = NULL, *third = NULL;
+  (void)rank;
+  ck_assert_int_eq(cut_half(share, &again), DVI_OK);
+  for (int k = 0; k <= 3; k++) {
+    const size_t cells = (size_t)dvi_mesh_count(half, k);
+    ck_assert_int_eq(dvi_mesh_count(again, k), (int64_t)cells);
+    ck_assert_mem_eq(dvi_mesh_share_numbers(again, k), dvi_mesh_share_numbers(half, k),
+                     cells * sizeof(int64_t));
+    ck_assert_mem_eq(dvi_mesh_share_owners(again, k), dvi_mesh_share_owners(half, k),
+                     cells * sizeof(int));
+  }
+  ck_assert_int_eq(cut_half(again, &third), DVI_UNSUPPORTED);
+  dvi_mesh_destroy(&again);
+}
+
+START_TEST(the_share_of_one_process_can_be_cut)
+{
+  const dvi_generator_options options = {.cells = {4, 4, 4}, .grading = {1.2, 1, 1.4}};
+  dvi_mesh *mesh = with_core_and_exit(generated("box", options), NULL), *half = NULL;
+  const int owner[64] = {0};
+  ck_assert_int_eq(cut_half(mesh, &half), DVI_OK);
+  run_ranks(mesh, 1, owner, cut_again, half);
+  dvi_mesh_destroy(&half);
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
+
 SUITE(shares)
 {
+  tcase_add_test(tests, the_share_of_one_process_can_be_cut);
   tcase_add_test(tests, tetrahedra_have_the_bits_of_the_whole_mesh);
   tcase_add_test(tests, triangles_have_the_bits_of_the_whole_mesh);
   tcase_add_test(tests, intervals_have_the_bits_of_the_whole_mesh);

@@ -27,6 +27,13 @@ typedef struct dvi_division_options {
   const char *partitioner;
 } dvi_division_options;
 
+/** What a process has received from others. */
+typedef struct dvi_division_traffic {
+  int64_t messages, bytes; /**< from one process each: values of ghosts, and places of nodes */
+  int64_t sums;            /**< of the solver, over all processes, of 568 bytes each */
+  int64_t gathers;         /**< of the solver's coarsest unknowns from all processes */
+} dvi_division_traffic;
+
 /** Facts about the share of a process. */
 typedef struct dvi_division_facts {
   int rank, ranks;                              /**< this process, and how many there are */
@@ -37,6 +44,9 @@ typedef struct dvi_division_facts {
   int messages_in[DVI_MESH_DIMENSION_MAX + 1];  /**< in as many messages */
   int neighbours;                               /**< processes that own ghosts */
   int64_t agreements; /**< so far, in which all processes have added or compared numbers */
+  dvi_division_traffic traffic;    /**< so far, as PETSc counts it in this process */
+  int64_t corrections, iterations; /**< of implicit equations so far, and in conjugate gradients */
+  dvi_division_traffic iteration;  /**< of one of these, the last one */
 } dvi_division_facts;
 
 /** What the modes of a divided field took. */
@@ -97,6 +107,13 @@ dvi_status dvi_mesh_write_divided(const dvi_mesh *mesh, const char *path);
  *  @retval (others)      as dvi_mesh_divide, and as dvi_mesh_create for the cells of a share */
 dvi_status dvi_mesh_read_divided(const char *path, const dvi_division_options *options,
                                  dvi_mesh **share, dvi_division **division);
+
+/** Read the whole mesh of such a file, in a process that needs no others.
+ *
+ *  @param[out] mesh  for dvi_mesh_destroy
+ *
+ *  @retval (all)  as dvi_mesh_read_divided */
+dvi_status dvi_mesh_read_whole(const char *path, dvi_mesh **mesh);
 
 /** Find owners of the n-cells of a mesh, among any number of processes. Few may foresee how many
  *  would share it: the owners are not the ones that dvi_mesh_divide finds on another number of

@@ -1,6 +1,7 @@
 #include "field/mesh/share.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "core/memory.h"
 #include "core/status.h"
@@ -105,6 +106,39 @@ dvi_status dvi__sum_of_all(const dvi_mesh *mesh, dvi__accumulator *sum, double *
   return DVI_OK;
 }
 
+/* ---- rows of the whole mesh ---- */
+
+/* Words that are put together at once, of rows that are not wider. */
+enum { WORDS = 1 << 14 };
+
+int64_t dvi__whole_room(int width)
+{
+  return width < WORDS ? WORDS : width;
+}
+
+/* A process adds the bits of its rows to the zeros of the others, so that their sum as integers is
+ * exact, of -0 as well. */
+dvi_status dvi__gather_rows(const dvi_mesh *mesh, const dvi__whole_rows *rows, int64_t *room,
+                            void (*put)(void *to, int64_t count, const int64_t *word), void *to)
+{
+  const int64_t width = rows->width, most = dvi__whole_room(rows->width) / width;
+  int64_t here = 0;
+  for (int64_t first = 0; first < rows->total; first += most) {
+    const int64_t count = rows->total - first < most ? rows->total - first : most;
+    memset(room, 0, (size_t)(count * width) * sizeof *room);
+    for (; here < rows->listed; here++) {
+      const int64_t row = (rows->number != NULL ? rows->number[here] : here) - first;
+      if (row >= count) break;
+      rows->fill(rows->of, here, room + row * width);
+    }
+    DVI_TRY(dvi__count_all(mesh, (int)(count * width), room));
+    put(to, count * width, room);
+  }
+  return DVI_OK;
+}
+
+/* ---- places ---- */
+
 /* The owner of the first cell has it before all others there, and another process may have a later
  * one where cells meet without common vertices. */
 dvi_status dvi__locate_first(const dvi_mesh *mesh, const double *at, double *place, int64_t *number)
@@ -134,8 +168,13 @@ dvi_status dvi__check_owned(const dvi_mesh *mesh, int k, int64_t count, const in
 
 dvi_status dvi__refuse_share(const dvi_mesh *mesh, const char *what)
 {
+  return dvi__refuse_share_but(mesh, what, "");
+}
+
+dvi_status dvi__refuse_share_but(const dvi_mesh *mesh, const char *what, const char *remedy)
+{
   if (mesh->share == NULL) return DVI_OK;
-  return dvi__fail(DVI_UNSUPPORTED,
-                   "%s needs a whole mesh, and this is one of %d shares (dvi_mesh_cut)", what,
-                   mesh->share->ranks.count);
+  return dvi__fail(DVI_UNSUPPORTED, "%s needs a whole mesh, which %d processes share: take %s%s",
+                   what, mesh->share->ranks.count, remedy,
+                   remedy[0] != '\0' ? ", or one process" : "one process");
 }

@@ -68,6 +68,23 @@ dvi_status dvi__sum_of_all(const dvi_mesh *mesh, dvi__accumulator *sum, double *
 dvi_status dvi__count_all(const dvi_mesh *mesh, int count, int64_t *number);
 dvi_status dvi__largest_of_all(const dvi_mesh *mesh, int count, double *number);
 
+/* Rows of the whole mesh, of which each process has some. A row is words of 8 bytes. */
+typedef struct dvi__whole_rows {
+  int64_t total, listed; /* rows of all processes, and those that this one lists */
+  const int64_t *number; /* [listed] ascending numbers of these. NULL if they are all rows */
+  int width;             /* words of a row */
+  /* Fill the i-th row of the list, or leave it alone if it is another process's. Exactly one
+   * process fills a row. */
+  void (*fill)(const void *of, int64_t i, int64_t *word);
+  const void *of;
+} dvi__whole_rows;
+
+/* Give all rows in their order, block by block, to `put` on all processes: `count` words, of whole
+ * rows. Every bit is as it was. `room` is dvi__whole_room words. */
+dvi_status dvi__gather_rows(const dvi_mesh *mesh, const dvi__whole_rows *rows, int64_t *room,
+                            void (*put)(void *to, int64_t count, const int64_t *word), void *to);
+int64_t dvi__whole_room(int width);
+
 /* Find the first n-cell of the whole mesh at a point, and the place in it, as dvi_mesh_locate does.
  * The number is that in the whole mesh, or -1. A process that has not the cell has no place. */
 dvi_status dvi__locate_first(const dvi_mesh *mesh, const double *at, double *place,
@@ -76,7 +93,9 @@ dvi_status dvi__locate_first(const dvi_mesh *mesh, const double *at, double *pla
 /* Refuse k-cells of other processes. */
 dvi_status dvi__check_owned(const dvi_mesh *mesh, int k, int64_t count, const int *cell);
 
-/* Refuse a share for what needs a whole mesh, such as "march: avi". */
+/* Refuse a share for what needs a whole mesh, such as "march: avi". Beside one process there may be
+ * another remedy, such as "leapfrog". */
 dvi_status dvi__refuse_share(const dvi_mesh *mesh, const char *what);
+dvi_status dvi__refuse_share_but(const dvi_mesh *mesh, const char *what, const char *remedy);
 
 #endif

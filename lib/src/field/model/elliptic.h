@@ -6,7 +6,17 @@
 #include <dvi/mesh.h>
 
 /* Equations r(x) = 0 with the Jacobian A + D(x), where A is positive definite or semidefinite, and
- * D is diagonal. All arrays of unknowns have those of other processes, too, which the solver gives,
+ * D is diagonal.
+ *
+ * Equations of pairs have two numbers of each unknown. x, r and d are [2*unknowns], and the
+ * Jacobian with B = A - (1 - cosine) M is
+ *
+ *     [ B + D_1    sine M     ]
+ *     [ sine M    -(B + D_2) ],
+ *
+ * which is symmetric and indefinite. cosine^2 + sine^2 = 1.
+ *
+ * All arrays of unknowns have those of other processes, too, which the solver gives,
  * and which it does not ask for. */
 typedef struct dvi__elliptic {
   const dvi_mesh *share;
@@ -14,12 +24,14 @@ typedef struct dvi__elliptic {
   int64_t unknowns;
   const int *cell; /* [unknowns] of the degree, ascending */
   dvi_matrix A;    /* [unknowns] rows, which are right for own unknowns */
-  /* Of degree 1: the diagonal [unknowns] that A is for gradients of functions of the vertices, which
-   * a small one beside other entries would lose in roundings. Right for own unknowns */
+  /* Of degree 1: the diagonal [unknowns] that A is for gradients of functions of the vertices. A
+   * small one would be lost in roundings of A. Right for own unknowns */
   const double *of_gradients;
   /* The kernel of A: constants on each of the components, which are those of all processes. */
   int64_t components;
   const int *component; /* [unknowns] or -1. May be NULL without components */
+  const double *mass;   /* [unknowns] the diagonal M of pairs, or NULL */
+  double cosine, sine;  /* of pairs */
   dvi_status (*residual)(void *of, const double *x, double *r);
   dvi_status (*diagonal)(void *of, const double *x, double *d); /* NULL for linear equations */
   void *of;
@@ -28,7 +40,7 @@ typedef struct dvi__elliptic {
 
 typedef struct dvi__elliptic_report {
   int corrections;    /* of Newton's method */
-  int64_t iterations; /* of conjugate gradients, of all corrections */
+  int64_t iterations; /* of conjugate gradients, or minimal residuals, of all corrections */
   double residual;    /* the norm of r */
   double correction;  /* the norm of the last correction beside that of x */
   const char *why;    /* it ended, in a few words */

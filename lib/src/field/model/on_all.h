@@ -10,6 +10,7 @@ typedef struct dvi__field_equations {
   double mass, stiffness; /* factors of M and K. Both 0: K alone */
   const double *loss;     /* [unknowns] the diagonal S, or NULL */
   double losses;          /* its factor */
+  double cosine, sine;    /* of equations of pairs, or both 0 */
   dvi_status (*residual)(void *of, const double *x, double *r);
   dvi_status (*diagonal)(void *of, const double *x, double *d);
   void *of;

@@ -3,11 +3,11 @@
  *     A_{i+1} = A_i - (K + alpha M)^-1 (K A_i - d^T M_{k+1} B)
  *
  * as Newton's corrections. A small alpha makes the matrix definite, and slows the corrections down
- * by alpha / (alpha + lambda) with the smallest eigenvalue lambda that is not 0. Corrections have no
- * charge but by roundings, which alpha makes larger: gradients are taken away at the end.
+ * by alpha / (alpha + lambda) with the smallest eigenvalue lambda that is not 0. Corrections have
+ * no charge but by roundings, which alpha makes larger: gradients are taken away at the end.
  *
- * The gradient of phi that has the charge of a form A solves d^T M d phi = d^T M A on the vertices of
- * which all edges are unknowns. */
+ * The gradient of phi that has the charge of a form A solves d^T M d phi = d^T M A on the vertices
+ * of which all edges are unknowns. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -86,7 +86,7 @@ static dvi_status make_matrices(gradients *g, const dvi_matrix *d)
 {
   const dvi_field *f = g->field;
   const dvi_matrix M = dvi__csr_view(&f->mass, 1);
-  for (int64_t v = 0; v < d->columns; v++) {
+  for (int64_t v = 0; v < d->columns && g->mark != NULL; v++) {
     g->number[v] = g->mark[v] != 0 ? -1 : (int)g->free;
     if (g->number[v] >= 0) g->vertex[g->free++] = (int)v;
   }
@@ -190,6 +190,10 @@ dvi_status dvi__potential_on_all(dvi__inverse *inverse)
   const dvi_field *f = inverse->field;
   double fastest = 0, size;
   dvi__elliptic_report report;
+  if (inverse->M.column != NULL)
+    return dvi__refuse_share_but(f->mesh,
+                                 "maxwell: a potential of B with a star that is not diagonal",
+                                 "the circumcentric star");
   if (f->degree > 0) DVI_TRY(dvi_field_fastest(f, &fastest));
   memset(inverse->x, 0, (size_t)f->unknowns * sizeof *inverse->x);
   (void)residual(inverse, inverse->x, inverse->right);

@@ -12,8 +12,8 @@ typedef struct dvi__inverse {
   double *H, *curl;  /* [(k+1)-cells], [k-cells] */
 } dvi__inverse;
 
-/* Solve on all processes together. B of others' cells has been refreshed. Of all potentials x is the
- * one without charge, or of 0-forms without a mean, by M_k. */
+/* Solve on all processes together. B of others' cells has been refreshed. Of all potentials x is
+ * the one without charge, or of 0-forms without a mean, by M_k. */
 dvi_status dvi__potential_on_all(dvi__inverse *inverse);
 
 #endif

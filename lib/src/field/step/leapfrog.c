@@ -464,7 +464,9 @@ static dvi_status make_own(dvi__leapfrog *l, int threads)
   DVI_TRY(dvi__sweep_create(f, threads, &l->sweep));
   DVI_TRY(make_state(l));
   if (f->mass_is_diagonal && l->sweep.is_diagonal) return make_coefficients(l);
-  DVI_TRY(dvi__refuse_share(f->mesh, "march: leapfrog with a Whitney star"));
+  DVI_TRY(dvi__refuse_share_but(f->mesh, "march: leapfrog with a star that is not diagonal",
+                                f->is_wave ? "midpoint, the circumcentric star"
+                                           : "the circumcentric star"));
   return make_solver(l);
 }
 

@@ -7,9 +7,6 @@
 #include "core/status.h"
 #include "field/mesh/share.h"
 
-/* Numbers that are put together at once. */
-enum { CHUNK = 1 << 14 };
-
 /* ---- pieces ---- */
 
 static int64_t size_of(const dvi_mesh *mesh, const dvi__piece *piece)
@@ -25,41 +22,50 @@ int64_t dvi__pieces_size(const dvi_mesh *mesh, int pieces, const dvi__piece *pie
   return sum;
 }
 
-/* Put a form together. The owner of a cell adds the bits of its value to the zeros of the others,
- * so that their sum as integers is exact, of -0 as well. `bits` has room for a chunk. */
-static dvi_status put_form(const dvi_mesh *mesh, const dvi__piece *piece, int64_t *bits,
+typedef struct form {
+  const dvi_mesh *mesh;
+  const dvi__piece *piece;
+} form;
+
+static void fill_value(const void *of, int64_t i, int64_t *word)
+{
+  const form *f = of;
+  if (dvi__owns(f->mesh, f->piece->degree, i)) memcpy(word, f->piece->value + i, sizeof *word);
+}
+
+static void put_values(void *to, int64_t count, const int64_t *word)
+{
+  dvi__section_put(to, word, (size_t)count * sizeof *word);
+}
+
+/* Put a form together. */
+static dvi_status put_form(const dvi_mesh *mesh, const dvi__piece *piece, int64_t *room,
                            dvi__sections_writer *writer)
 {
-  const int k = piece->degree;
-  const int64_t total = size_of(mesh, piece);
-  int64_t here = 0;
-  for (int64_t first = 0; first < total; first += CHUNK) {
-    const int64_t count = total - first < CHUNK ? total - first : CHUNK;
-    memset(bits, 0, (size_t)count * sizeof *bits);
-    for (; here < piece->count && dvi__whole_number(mesh, k, here) < first + count; here++)
-      if (dvi__owns(mesh, k, here))
-        memcpy(bits + (dvi__whole_number(mesh, k, here) - first), piece->value + here,
-               sizeof *bits);
-    DVI_TRY(dvi__count_all(mesh, (int)count, bits));
-    dvi__section_put(writer, bits, (size_t)count * sizeof *bits);
-  }
-  return DVI_OK;
+  const form f = {mesh, piece};
+  const dvi__whole_rows rows = {.total = size_of(mesh, piece),
+                                .listed = piece->count,
+                                .number = mesh->share->number[piece->degree],
+                                .width = 1,
+                                .fill = fill_value,
+                                .of = &f};
+  return dvi__gather_rows(mesh, &rows, room, put_values, writer);
 }
 
 dvi_status dvi__pieces_put(const dvi_mesh *mesh, int pieces, const dvi__piece *piece,
                            dvi__sections_writer *writer)
 {
-  int64_t *bits = mesh->share != NULL ? DVI_NEW(int64_t, CHUNK) : NULL;
-  dvi_status status = dvi__agree(mesh, bits != NULL || mesh->share == NULL
+  int64_t *room = mesh->share != NULL ? DVI_NEW(int64_t, dvi__whole_room(1)) : NULL;
+  dvi_status status = dvi__agree(mesh, room != NULL || mesh->share == NULL
                                            ? DVI_OK
                                            : dvi__fail(DVI_NO_MEMORY, "march: no memory to save"));
   for (int i = 0; i < pieces && status == DVI_OK; i++) {
-    if (bits != NULL && piece[i].degree >= 0)
-      status = put_form(mesh, piece + i, bits, writer);
+    if (room != NULL && piece[i].degree >= 0)
+      status = put_form(mesh, piece + i, room, writer);
     else
       dvi__section_put(writer, piece[i].value, (size_t)piece[i].count * sizeof(double));
   }
-  dvi__release(bits);
+  dvi__release(room);
   return status;
 }
 

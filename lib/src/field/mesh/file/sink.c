@@ -7,28 +7,29 @@
 #include "core/memory.h"
 #include "march/whole_file.h"
 
-/* Make room for more bytes. Returns 0 if there is no memory, now or before. */
-static int has_room(dvi__sink *sink, size_t more)
+enum { ROOM = 1 << 16 };
+
+dvi_status dvi__sink_begin(dvi__sink *sink, const char *path)
 {
-  if (sink->has_failed) return 0;
-  if (sink->room - sink->count >= more) return 1;
-  size_t room = sink->room > 0 ? sink->room : (size_t)1 << 12;
-  while (room - sink->count < more && room <= SIZE_MAX / 2) room *= 2;
-  unsigned char *at = room - sink->count >= more ? DVI_NEW(unsigned char, room) : NULL;
-  if (at == NULL) {
-    sink->has_failed = 1;
-    return 0;
-  }
-  if (sink->count > 0) memcpy(at, sink->at, sink->count);
-  dvi__release(sink->at);
-  sink->at = at;
-  sink->room = room;
-  return 1;
+  *sink = (dvi__sink){.at = DVI_NEW(unsigned char, ROOM)};
+  if (sink->at == NULL) return dvi__fail(DVI_NO_MEMORY, "%.300s: no memory for the file", path);
+  return dvi__whole_begin(path, &sink->file);
+}
+
+static void empty(dvi__sink *sink)
+{
+  dvi__whole_put(sink->file, sink->at, sink->count);
+  sink->count = 0;
 }
 
 void dvi__put_bytes(dvi__sink *sink, const void *bytes, size_t count)
 {
-  if (count == 0 || !has_room(sink, count)) return;
+  if (sink->file == NULL || count == 0) return;
+  if (sink->count + count > ROOM) empty(sink);
+  if (count > ROOM) {
+    dvi__whole_put(sink->file, bytes, count);
+    return;
+  }
   memcpy(sink->at + sink->count, bytes, count);
   sink->count += count;
 }
@@ -77,11 +78,10 @@ void dvi__put_double(dvi__sink *sink, double value)
   dvi__put_little_endian(sink, bits, 8);
 }
 
-dvi_status dvi__sink_finish(dvi__sink *sink, const char *path, dvi_status status)
+dvi_status dvi__sink_finish(dvi__sink *sink, dvi_status status)
 {
-  if (status == DVI_OK && sink->has_failed)
-    status = dvi__fail(DVI_NO_MEMORY, "%.300s: no memory for the file", path);
-  if (status == DVI_OK) status = dvi__write_whole(path, sink->at, sink->count);
+  if (sink->file != NULL && status == DVI_OK) empty(sink);
+  status = dvi__whole_end(&sink->file, status);
   dvi__release(sink->at);
   *sink = (dvi__sink){.at = NULL};
   return status;

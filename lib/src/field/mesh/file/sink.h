@@ -1,5 +1,5 @@
-/* The bytes of a file that is to be written. They are put together in memory, so that a failure
- * leaves no half file. */
+/* The bytes of a file that is being written. The file stands beside its place until the end, so
+ * that a failure leaves no half file. */
 #ifndef DVI_FIELD_MESH_FILE_SINK_H
 #define DVI_FIELD_MESH_FILE_SINK_H
 #include <stddef.h>
@@ -7,12 +7,15 @@
 
 #include "core/status.h"
 
-/* Bytes that grow. What is put after memory ran out is lost, and told at the end. */
+/* Bytes on their way. A sink of zeros is of a process that does not write, and drops them. */
 typedef struct dvi__sink {
-  unsigned char *at;
-  size_t count, room;
-  int has_failed;
+  struct dvi__whole_file *file;
+  unsigned char *at; /* [64 KiB] not in the file yet */
+  size_t count;
 } dvi__sink;
+
+/* Begin a file, for dvi__sink_finish. DVI_IO_ERROR, DVI_NO_MEMORY. */
+dvi_status dvi__sink_begin(dvi__sink *sink, const char *path);
 
 /* Put bytes, or a text of up to 255 characters. */
 void dvi__put_bytes(dvi__sink *sink, const void *bytes, size_t count);
@@ -28,7 +31,7 @@ void dvi__put_xml(dvi__sink *sink, const char *text);
 void dvi__put_little_endian(dvi__sink *sink, uint64_t value, int width);
 void dvi__put_double(dvi__sink *sink, double value);
 
-/* Write the file if the status is DVI_OK, and release the bytes. Returns the first failure. */
-dvi_status dvi__sink_finish(dvi__sink *sink, const char *path, dvi_status status);
+/* Keep the file if the status is DVI_OK, and otherwise the old one. Returns the first failure. */
+dvi_status dvi__sink_finish(dvi__sink *sink, dvi_status status);
 
 #endif

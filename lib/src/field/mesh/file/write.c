@@ -5,18 +5,20 @@
 #include <math.h>
 #include <string.h>
 
+#include "field/mesh/share.h"
+
 /* A format, with what it can hold. */
 typedef struct format {
-  const char *end, *name;
-  int is_surface; /* nothing but cells of two dimensions */
+  const char *end, *name, *whole; /* the last one for sentences about shares */
+  int is_surface;                 /* nothing but cells of two dimensions */
   int has_periods, has_views;
   dvi_status (*write)(const dvi_mesh *mesh, int views, const dvi_view *view, dvi__sink *sink);
 } format;
 static const format formats[] = {
-    {".msh", "MSH", 0, 1, 0, dvi__write_msh},
-    {".off", "OFF", 1, 0, 0, dvi__write_off},
-    {".ply", "PLY", 1, 0, 0, dvi__write_ply},
-    {".vtu", "VTU", 0, 1, 1, dvi__write_vtu},
+    {".msh", "MSH", "mesh file: MSH", 0, 1, 0, dvi__write_msh},
+    {".off", "OFF", "mesh file: OFF", 1, 0, 0, dvi__write_off},
+    {".ply", "PLY", "mesh file: PLY", 1, 0, 0, dvi__write_ply},
+    {".vtu", "VTU", "mesh file: VTU", 0, 1, 1, dvi__write_vtu},
 };
 enum { FORMATS = sizeof formats / sizeof *formats };
 
@@ -85,7 +87,7 @@ static dvi_status check_mesh(const format *f, const dvi_mesh *mesh)
     return dvi__fail(DVI_UNSUPPORTED,
                      "%s cannot hold a mesh in a space that repeats itself: take .msh or .vtu",
                      f->name);
-  return DVI_OK;
+  return f->has_views ? DVI_OK : dvi__refuse_share(mesh, f->whole);
 }
 
 static int has_control_characters(const char *name)
@@ -125,16 +127,46 @@ static dvi_status check_views(const format *f, const dvi_mesh *mesh, int views,
   return DVI_OK;
 }
 
+static dvi_status check(const dvi_mesh *mesh, const char *path, int views, const dvi_view *view,
+                        const format **f)
+{
+  if (path == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "mesh file: a mesh and a path are needed");
+  DVI_TRY(find_format(path, f));
+  DVI_TRY(check_mesh(*f, mesh));
+  return check_views(*f, mesh, views, view);
+}
+
+/* The first one of several processes writes the whole mesh. */
 dvi_status dvi_mesh_write(const dvi_mesh *mesh, const char *path, int views, const dvi_view *view)
 {
   const format *f = NULL;
   dvi__sink sink = {.at = NULL};
-  if (mesh == NULL || path == NULL)
-    return dvi__fail(DVI_BAD_ARGUMENT, "mesh file: a mesh and a path are needed");
-  DVI_TRY(find_format(path, &f));
-  DVI_TRY(check_mesh(f, mesh));
-  DVI_TRY(check_views(f, mesh, views, view));
-  return dvi__sink_finish(&sink, path, f->write(mesh, views, view, &sink));
+  if (mesh == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "mesh file: a mesh and a path are needed");
+  DVI_TRY(dvi__agree(mesh, check(mesh, path, views, view, &f)));
+  dvi_status status = dvi__is_first(mesh) ? dvi__sink_begin(&sink, path) : DVI_OK;
+  status = dvi__agree(mesh, status);
+  if (status == DVI_OK && f != NULL) status = f->write(mesh, views, view, &sink);
+  return dvi__agree(mesh, dvi__sink_finish(&sink, status));
+}
+
+static dvi_status check_points(const dvi_mesh *mesh, const double *point)
+{
+  if (point == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "mesh file: points are needed");
+  for (int64_t i = 0; i < mesh->count[0] * mesh->space; i++)
+    if (!isfinite(point[i]))
+      return dvi__fail(DVI_BAD_ARGUMENT, "mesh file: a coordinate of vertex %lld is %g",
+                       (long long)dvi__whole_number(mesh, 0, i / mesh->space), point[i]);
+  return DVI_OK;
+}
+
+dvi_status dvi_mesh_write_moved(const dvi_mesh *mesh, const double *point, const char *path,
+                                int views, const dvi_view *view)
+{
+  if (mesh == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "mesh file: a mesh and a path are needed");
+  DVI_TRY(dvi__agree(mesh, check_points(mesh, point)));
+  dvi_mesh moved = *mesh;
+  moved.point = (double *)point;
+  return dvi_mesh_write(&moved, path, views, view);
 }
 
 /* ---- series ---- */
@@ -162,6 +194,7 @@ dvi_status dvi_series_write(const char *path, int64_t count, const double *time,
 {
   dvi__sink sink = {.at = NULL};
   DVI_TRY(check_series(path, count, time, file));
+  const dvi_status begun = dvi__sink_begin(&sink, path);
   dvi__put(&sink, "<?xml version=\"1.0\"?>\n"
                   "<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n"
                   "  <Collection>\n");
@@ -173,5 +206,5 @@ dvi_status dvi_series_write(const char *path, int64_t count, const double *time,
     dvi__put(&sink, "\"/>\n");
   }
   dvi__put(&sink, "  </Collection>\n</VTKFile>\n");
-  return dvi__sink_finish(&sink, path, DVI_OK);
+  return dvi__sink_finish(&sink, begun);
 }
