@@ -122,6 +122,14 @@ paste -d , torus1.csv torus3.csv | awk -F , '
   NR > 1 && ($1 != $3 || ($2 - $4) ^ 2 > 1e-28) { exit 1 }' ||
   fail "Maxwell by midpoint: $(cat torus3.csv), and of one $(cat torus1.csv)"
 
+# A start by B has a potential.
+{
+  sed -e '/^probes/,/^  e:/d' -e '/^sources/,/ring/d' -e 's/left: absorbing/left: pec/' box.yaml
+  echo 'initial: {B: [x*(1-x)*(1-2*y), -(1-2*x)*y*(1-y), 0]}'
+} >curl.yaml
+as_one 2 curl.yaml
+by 2 curl.yaml --method midpoint --h 0.1 --final >out || fail 'no start from B by midpoint'
+
 # ---- checkpoints ----
 
 # goes_on N M SCENE OPTION...: half of a run by N, and the rest by M, are the whole one.

@@ -86,7 +86,7 @@ static dvi_status make_matrices(gradients *g, const dvi_matrix *d)
 {
   const dvi_field *f = g->field;
   const dvi_matrix M = dvi__csr_view(&f->mass, 1);
-  for (int64_t v = 0; v < d->columns; v++) {
+  for (int64_t v = 0; v < d->columns && g->mark != NULL; v++) {
     g->number[v] = g->mark[v] != 0 ? -1 : (int)g->free;
     if (g->number[v] >= 0) g->vertex[g->free++] = (int)v;
   }
@@ -190,6 +190,10 @@ dvi_status dvi__potential_on_all(dvi__inverse *inverse)
   const dvi_field *f = inverse->field;
   double fastest = 0, size;
   dvi__elliptic_report report;
+  if (inverse->M.column != NULL)
+    return dvi__refuse_share_but(f->mesh,
+                                 "maxwell: a potential of B with a star that is not diagonal",
+                                 "the circumcentric star");
   if (f->degree > 0) DVI_TRY(dvi_field_fastest(f, &fastest));
   memset(inverse->x, 0, (size_t)f->unknowns * sizeof *inverse->x);
   (void)residual(inverse, inverse->x, inverse->right);
