@@ -169,7 +169,9 @@ static void check_starts(void)
   expect(dvi_march_save_memory(march[0], bytes, sizeof bytes, &size) == DVI_OK, "no state", name);
   expect(dvi_march_load_memory(march[2], bytes, size) == DVI_OK, "a refused state", name);
   expect(energy_of(march[0], name) == energy_of(march[2], name), "another state", name);
+  const long blocks = dvi__allocation_count();
   for (int i = 0; i < 3; i++) expect(dvi_march_advance(march[i], end) == DVI_OK, "no step", name);
+  expect(dvi__allocation_count() == blocks, "a step allocates", name);
   expect(energy_of(march[0], name) > 0.1, "no energy", name);
   for (int i = 1; i < 3; i++) {
     expect(energy_of(march[0], name) == energy_of(march[i], name), "another motion", name);
