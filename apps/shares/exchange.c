@@ -11,13 +11,22 @@
 #include "load/elastic.h"
 #include "shares/share.h"
 
+/* Return the unknowns of a step for each one of the field. */
+static int stages_of(const char *method)
+{
+  return strncmp(method, "galerkin", 8) == 0 && strstr(method, "degree=1") == NULL ? 2 : 1;
+}
+
 exchange exchange_of(const problem *scene, const char *method)
 {
   const dvi_elastic *solid = elastic_of(scene);
   if (strcmp(method, "yee") == 0)
     return (exchange){.kind = EXCHANGE_PLANES, .times = 1, .steps = 1};
   if (share_is_implicit(method))
-    return (exchange){.kind = EXCHANGE_SOLUTION, .times = 1, .steps = 1};
+    return (exchange){.kind = EXCHANGE_SOLUTION,
+                      .degree = dvi_field_degree(dvi_scene_field(scene->scene)),
+                      .times = stages_of(method),
+                      .steps = 1};
   if (solid == NULL)
     return (exchange){.kind = EXCHANGE_FORM,
                       .degree = dvi_field_degree(dvi_scene_field(scene->scene)),
@@ -56,6 +65,17 @@ static void tell_planes(int steps, double bytes, double messages)
   (void)printf(", %.0f bytes in %.0f messages together\n", bytes, messages);
 }
 
+static const char *form_sentence(const exchange *what)
+{
+  if (what->kind == EXCHANGE_FORM)
+    return what->degree == 0 ? "a step: all processes receive the values of others at vertices once"
+                             : "a step: all processes receive the values of others on edges once";
+  return what->degree == 0 ? "a product with the matrix of a step: all processes receive the "
+                             "unknowns of others at vertices once"
+                           : "a product with the matrix of a step: all processes receive the "
+                             "unknowns of others on edges once";
+}
+
 void exchange_tell(const exchange *what, const dvi_march *march, double bytes, double messages)
 {
   static const char *const sentence[] = {
@@ -63,8 +83,6 @@ void exchange_tell(const exchange *what, const dvi_march *march, double bytes, d
                           "component by component",
       [EXCHANGE_SLOTS] = "an exchange: all processes receive where the nodes of others are, "
                          "component by component",
-      [EXCHANGE_SOLUTION] = "a product with the matrix of a step: all processes receive the "
-                            "unknowns of others at vertices once",
   };
   if (what->kind == EXCHANGE_EVENTS) {
     (void)printf("events: processes tell each other where the nodes of single cells are at their "
@@ -75,16 +93,16 @@ void exchange_tell(const exchange *what, const dvi_march *march, double bytes, d
     tell_planes(what->steps, bytes, messages);
     return;
   }
-  const char *text = what->kind != EXCHANGE_FORM ? sentence[what->kind]
-                     : what->degree == 0
-                         ? "a step: all processes receive the values of others at vertices once"
-                         : "a step: all processes receive the values of others on edges once";
+  const bool is_form = what->kind == EXCHANGE_FORM || what->kind == EXCHANGE_SOLUTION;
+  const char *text = is_form ? form_sentence(what) : sentence[what->kind];
   (void)printf("%s, %.0f bytes in %.0f messages together\n", text, bytes, messages);
   if (what->kind == EXCHANGE_SLOTS && march != NULL) tell_slots(march);
   if (what->kind == EXCHANGE_SOLUTION)
-    (void)printf("an iteration of conjugate gradients has one product, two inner products, each a "
-                 "sum over all processes of 568 bytes,\nand a multigrid cycle; how many there are "
-                 "depends on the solution\n");
+    (void)printf("an iteration of %s has one product, two inner products, each a "
+                 "sum over all processes of 568 bytes,\nand %s; how many there are "
+                 "depends on the solution\n",
+                 what->times == 1 ? "conjugate gradients" : "minimal residuals",
+                 what->times == 1 ? "a multigrid cycle" : "a multigrid cycle for each stage");
 }
 
 /* ---- what is counted ---- */

@@ -19,7 +19,7 @@ typedef enum exchange_kind {
 typedef struct exchange {
   exchange_kind kind;
   int degree; /**< of the form on the mesh */
-  int times;  /**< that it is exchanged, once for each component */
+  int times;  /**< that it is exchanged, once for each component or stage */
   int steps;  /**< for which it is enough */
 } exchange;
 

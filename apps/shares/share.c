@@ -42,24 +42,30 @@ typedef struct shared_methods {
   const char *all, *remedy;
 } shared_methods;
 
+/* Shares of waves have all implicit methods, and those of Maxwell's fields midpoint. */
+static bool is_wave(const problem *scene)
+{
+  return dvi_scene_marches(scene->scene, "imex");
+}
+
 static shared_methods methods_of(const problem *scene)
 {
   static const shared_methods of_solids = {"avi and verlet", "avi"}, of_grids = {"yee", "yee"},
                               of_waves = {"leapfrog, midpoint, imex and galerkin",
                                           "leapfrog, or with a potential midpoint"},
-                              of_light = {"leapfrog and yee", "leapfrog"};
+                              of_light = {"leapfrog, midpoint and, on grids, yee", "leapfrog"};
   if (elastic_of(scene) != NULL) return of_solids;
   if (dvi_scene_grid_only(scene->scene) != NULL) return of_grids;
-  return dvi_scene_marches(scene->scene, "midpoint") ? of_waves : of_light;
+  return is_wave(scene) ? of_waves : of_light;
 }
 
-/* Tell if processes share a method of a scene. Those of waves have implicit ones. */
+/* Tell if processes share a method of a scene. */
 static bool is_shared(const problem *scene, const char *method)
 {
   if (method == NULL) return false;
   if (elastic_of(scene) != NULL) return dvi_scene_marches(scene->scene, method);
   if (strcmp(method, "leapfrog") == 0) return true;
-  if (!dvi_scene_marches(scene->scene, "midpoint")) return strcmp(method, "yee") == 0;
+  if (strcmp(method, "yee") == 0) return !is_wave(scene);
   return share_is_implicit(method) && dvi_scene_marches(scene->scene, method);
 }
 
@@ -264,7 +270,8 @@ static bool count_unknowns(const problem *scene, mesh_division *own)
 {
   const dvi_field *field = dvi_scene_field(scene->scene);
   char *unknown = mark_unknowns(field);
-  const form_of_share form = {.counts = unknown, .by_share = true};
+  const form_of_share form = {
+      .degree = dvi_field_degree(field), .counts = unknown, .by_share = true};
   const bool good = unknown != NULL &&
                     stand_in_count(field_mesh(field), &form, ranks_number(), ranks_count(), own);
   free(unknown);

@@ -100,13 +100,59 @@ static void refuse_changes(void)
   refuse_changed("parts/2/cells_0", H5T_NATIVE_INT, 3, first, DVI_BAD_FILE, "number 1 in row 2");
 }
 
-static void refuse_cut(void)
+static long size_of_file(void)
 {
   long size = 0;
   FILE *stream = rank == 0 ? fopen(path, "rb") : NULL;
   if (stream != NULL && fseek(stream, 0, SEEK_END) == 0) size = ftell(stream);
   if (stream != NULL) (void)fclose(stream);
   (void)MPI_Bcast(&size, 1, MPI_LONG, 0, MPI_COMM_WORLD);
+  return size;
+}
+
+/* The first process turns the bits of a byte of the file. Returns whether it worked. */
+static int turn_byte(long at)
+{
+  FILE *stream = fopen(path, "r+b");
+  if (stream == NULL) return 0;
+  int byte = fseek(stream, at, SEEK_SET) == 0 ? fgetc(stream) : EOF;
+  if (byte != EOF && fseek(stream, at, SEEK_SET) == 0) byte = fputc(byte ^ 0xff, stream);
+  return fclose(stream) == 0 && byte != EOF;
+}
+
+static dvi_status read_share(dvi_mesh **share, dvi_division **division)
+{
+  const dvi_division_options options = {.size = sizeof options, .partitioner = "blocks"};
+  return dvi_mesh_read_divided(path, &options, share, division);
+}
+
+/* Wherever a byte is damaged, the file is refused, unless nothing is said there. */
+static void refuse_damage(void)
+{
+  dvi_mesh *good, *share;
+  dvi_division *of_good, *division;
+  int refusals = 0;
+  write_mesh();
+  const long size = size_of_file();
+  expect(read_share(&good, &of_good) == DVI_OK, "good", "damage");
+  for (long at = 5; at < size; at += 401) {
+    expect(rank > 0 || turn_byte(at), "turned", "damage");
+    const dvi_status status = read_share(&share, &division);
+    refusals += share == NULL;
+    expect(share != NULL || status == DVI_BAD_FILE, "status", "damage");
+    expect(share == NULL || share_differs(share, good) == 0, "taken", "damage");
+    expect(rank > 0 || turn_byte(at), "turned back", "damage");
+    dvi_mesh_destroy(&share);
+    dvi_division_destroy(&division);
+  }
+  expect(refusals > size / 401 / 2, "few", "damage");
+  dvi_mesh_destroy(&good);
+  dvi_division_destroy(&of_good);
+}
+
+static void refuse_cut(void)
+{
+  const long size = size_of_file();
   for (long cut = size - 1; cut > 0; cut = cut / 3) {
     expect(rank > 0 || truncate(path, cut) == 0, "cut", "file");
     refuse(path, DVI_BAD_FILE, "cut short");
@@ -156,6 +202,7 @@ void check_refused_parts(void)
   refuse_memory();
   refuse_changes();
   refuse_names();
+  refuse_damage();
   refuse_cut();
   if (rank == 0) (void)unlink(path);
 }

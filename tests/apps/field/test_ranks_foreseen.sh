@@ -97,7 +97,11 @@ awk -F, 'NR > 1 { cells += $3; wrong += !($4 > 0 && $5 == 2 && $6 == 2 && $7 % 8
 "$dvi" explain kepler --method verlet --ranks 3 >out.txt 2>&1
 [ $? -eq 2 ] || fail "explain --ranks takes kepler: $(cat out.txt)"
 "$dvi" explain torus.yaml --method midpoint --ranks 3 >out.txt 2>&1
-[ $? -eq 2 ] || fail "explain --ranks takes midpoint for Maxwell: $(cat out.txt)"
+says out.txt '^a product .* unknowns of others on edges once' 'midpoint for Maxwell'
+"$dvi" explain wave.yaml --method galerkin --ranks 3 >out.txt 2>&1
+says out.txt '^an iteration of minimal residuals .* of 568 bytes' galerkin
+"$dvi" explain torus.yaml --method galerkin --ranks 3 >out.txt 2>&1
+[ $? -eq 2 ] || fail "explain --ranks takes galerkin for Maxwell: $(cat out.txt)"
 "$dvi" explain grid.yaml --ranks 5 >out.txt 2>&1
 [ $? -ne 0 ] || fail "explain --ranks cuts 9 boxes among 5: $(cat out.txt)"
 exit $((failures > 0))

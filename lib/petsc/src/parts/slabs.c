@@ -12,7 +12,8 @@
 #include "core/memory.h"
 #include "core/status.h"
 
-enum { NAME_SIZE = 64 };
+/* Numbers of at most so many bytes stand in the header of their dataset, and others in chunks. */
+enum { NAME_SIZE = 64, HEADER_MOST = 1024, CHUNK_BYTES = 1 << 19 };
 
 struct dvi__slabs {
   hid_t id;
@@ -93,6 +94,17 @@ dvi_status dvi__slabs_open(const dvi__world *world, const char *path, dvi__slabs
   return status;
 }
 
+/* Headers of this version have checksums. */
+static hid_t create_file(const char *path)
+{
+  const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+  hid_t id = H5I_INVALID_HID;
+  if (access >= 0 && H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_LATEST) >= 0)
+    id = H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, access);
+  if (access >= 0) (void)H5Pclose(access);
+  return id;
+}
+
 dvi_status dvi__slabs_create(const char *path, dvi__slabs **file)
 {
   dvi__slabs *made = slabs_new(path);
@@ -104,7 +116,7 @@ dvi_status dvi__slabs_create(const char *path, dvi__slabs **file)
     return dvi__fail(DVI_NO_MEMORY, "petsc: no memory for a file");
   }
   (void)snprintf(made->beside, size, "%s.part-%ld", path, (long)getpid());
-  made->id = H5Fcreate(made->beside, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  made->id = create_file(made->beside);
   if (made->id >= 0) return DVI_OK;
   (void)dvi__slabs_end(file, 0);
   return dvi__fail(DVI_IO_ERROR, "cannot write a file beside %.300s", path);
@@ -152,6 +164,18 @@ int dvi__slabs_have(const dvi__slabs *file, const char *name)
   return H5Lexists(file->id, name, H5P_DEFAULT) > 0;
 }
 
+dvi_status dvi__slabs_members(const dvi__slabs *file, const char *name, int *members)
+{
+  H5G_info_t facts;
+  const hid_t group = dvi__slabs_have(file, name) ? H5Gopen2(file->id, name, H5P_DEFAULT)
+                                                  : H5I_INVALID_HID;
+  const int known = group >= 0 && H5Gget_info(group, &facts) >= 0 && facts.nlinks < INT_MAX;
+  if (group >= 0) (void)H5Gclose(group);
+  if (!known) return dvi__slabs_refuse(file, "it has no group \"%s\", or that is damaged", name);
+  *members = (int)facts.nlinks;
+  return DVI_OK;
+}
+
 /* Give the axes of an open dataset. Returns whether they are one or two. */
 static int shape_of(hid_t set, int64_t *rows, int *width)
 {
@@ -173,7 +197,8 @@ dvi_status dvi__slabs_shape(const dvi__slabs *file, const char *name, int64_t *r
   const int known = set >= 0 && shape_of(set, rows, width);
   if (set >= 0) (void)H5Dclose(set);
   return known ? DVI_OK
-               : dvi__slabs_refuse(file, "it has no dataset \"%s\" of one or two axes", name);
+               : dvi__slabs_refuse(
+                     file, "it has no dataset \"%s\" of one or two axes, or that is damaged", name);
 }
 
 /* Numbers of another class would be converted without a word. */
@@ -215,7 +240,8 @@ dvi_status dvi__slabs_read(const dvi__slabs *file, const dvi__slab *slab, void *
   const int is_read = set >= 0 && has_class(set, slab->type) && read_rows(set, slab, numbers);
   if (set >= 0) (void)H5Dclose(set);
   return is_read ? DVI_OK
-                 : dvi__slabs_refuse(file, "\"%s\" has other numbers, or is cut short", slab->name);
+                 : dvi__slabs_refuse(file, "\"%s\" has other numbers, is damaged, or is cut short",
+                                     slab->name);
 }
 
 dvi_status dvi__slabs_read_text(const dvi__slabs *file, const char *name, size_t size, char *text)
@@ -232,7 +258,8 @@ dvi_status dvi__slabs_read_text(const dvi__slabs *file, const char *name, size_t
   if (space >= 0) (void)H5Sclose(space);
   if (type >= 0) (void)H5Tclose(type);
   if (set >= 0) (void)H5Dclose(set);
-  return is_read ? DVI_OK : dvi__slabs_refuse(file, "it has no text \"%s\"", name);
+  return is_read ? DVI_OK
+                 : dvi__slabs_refuse(file, "it has no text \"%s\", or that is damaged", name);
 }
 
 /* ---- write ---- */
@@ -243,13 +270,33 @@ static dvi_status check_written(const dvi__slabs *file, int is_written)
                     : dvi__fail(DVI_IO_ERROR, "cannot write %.300s: HDF5 failed", file->path);
 }
 
+/* Let a dataset have checksums: of its header, where it is small, or of chunks of whole rows. */
+static int choose_layout(hid_t how, hid_t type, hid_t space)
+{
+  hsize_t extent[2] = {1, 1};
+  const int axes = H5Sget_simple_extent_ndims(space);
+  if (axes > 0) (void)H5Sget_simple_extent_dims(space, extent, NULL);
+  const hsize_t row = extent[1] * H5Tget_size(type), most = CHUNK_BYTES / row;
+  if (extent[0] * row <= HEADER_MOST) return H5Pset_layout(how, H5D_COMPACT) >= 0;
+  if (extent[0] > most) extent[0] = most > 0 ? most : 1;
+  return H5Pset_chunk(how, axes, extent) >= 0 && H5Pset_fletcher32(how) >= 0;
+}
+
+static hid_t create_set(hid_t file, const char *name, hid_t type, hid_t space)
+{
+  const hid_t how = H5Pcreate(H5P_DATASET_CREATE);
+  const hid_t set = how >= 0 && space >= 0 && choose_layout(how, type, space)
+                        ? H5Dcreate2(file, name, type, space, H5P_DEFAULT, how, H5P_DEFAULT)
+                        : H5I_INVALID_HID;
+  if (how >= 0) (void)H5Pclose(how);
+  return set;
+}
+
 /* Write a whole dataset, and close its space. */
 static int write_set(hid_t file, const char *name, hid_t type, hid_t in_memory, hid_t space,
                      const void *numbers)
 {
-  const hid_t set = space >= 0
-                        ? H5Dcreate2(file, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT)
-                        : H5I_INVALID_HID;
+  const hid_t set = create_set(file, name, type, space);
   int is_written = set >= 0 &&
                    H5Dwrite(set, in_memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers) >= 0;
   if (set >= 0) is_written = H5Dclose(set) >= 0 && is_written;

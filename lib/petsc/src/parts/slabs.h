@@ -31,6 +31,9 @@ dvi_status dvi__slabs_end(dvi__slabs **file, int keep);
 /* Tell whether the file has a dataset or a group. A/B is looked for if there is an A. */
 int dvi__slabs_have(const dvi__slabs *file, const char *name);
 
+/* Give the number of members of a group. DVI_BAD_FILE if it is not there. */
+dvi_status dvi__slabs_members(const dvi__slabs *file, const char *name, int *members);
+
 /* Give the number of rows of a dataset, and their width, 0 if it has one axis. DVI_BAD_FILE if it
  * has more, or is not there. */
 dvi_status dvi__slabs_shape(const dvi__slabs *file, const char *name, int64_t *rows, int *width);

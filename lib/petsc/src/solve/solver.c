@@ -6,6 +6,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "edges.h"
 #include "multigrid.h"
 #include "owners.h"
 #include "pair.h"
@@ -24,11 +25,12 @@ typedef struct solver {
   dvi__world *world;
   PetscInt *place; /* [unknowns] columns of `A` */
   dvi__operator A;
-  dvi__multigrid *multigrid;
-  dvi__pair pair;        /* of equations of pairs */
-  int numbers;           /* of each unknown, 1 or 2 */
-  double *x, *r;         /* [numbers*unknowns] */
-  PetscScalar *diagonal; /* [numbers*own] of the Jacobian beside A */
+  dvi__multigrid *multigrid; /* of vertices */
+  dvi__edges *edges;         /* or of edges */
+  dvi__pair pair;            /* of equations of pairs */
+  int numbers;               /* of each unknown, 1 or 2 */
+  double *x, *r;             /* [numbers*unknowns] */
+  PetscScalar *diagonal;     /* [numbers*own] of the Jacobian beside A */
   SNES snes;
   Mat jacobian;
   Vec solution, residual;
@@ -246,7 +248,8 @@ static PetscErrorCode make_gradients(solver *s)
   PetscCall(KSPSetTolerances(ksp, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT, ITERATIONS));
   PetscCall(KSPSetReusePreconditioner(ksp, PETSC_TRUE));
   PetscCall(KSPGetPC(ksp, &pc));
-  return s->numbers == 1 ? dvi__multigrid_use(s->multigrid, pc) : dvi__pair_use(&s->pair, ksp);
+  if (s->numbers == 2) return dvi__pair_use(&s->pair, ksp);
+  return s->edges != NULL ? dvi__edges_use(s->edges, pc) : dvi__multigrid_use(s->multigrid, pc);
 }
 
 static PetscErrorCode make_newton(solver *s)
@@ -274,7 +277,10 @@ static PetscErrorCode make(solver *s, const dvi__elliptic *e)
   PetscCall(dvi__place_unknowns(s->world->comm, &unknowns, s->place, &own));
   PetscCall(dvi__operator_of_share(s->world->comm, &unknowns, &e->A, &s->A));
   PetscCall(PetscCalloc1(numbers * (size_t)own, &s->diagonal));
-  PetscCall(dvi__multigrid_create(&s->A, &s->multigrid));
+  if (e->degree == 0)
+    PetscCall(dvi__multigrid_create(&s->A, &s->multigrid));
+  else
+    PetscCall(dvi__edges_create(&unknowns, &s->A, &s->edges));
   if (s->numbers == 2) PetscCall(dvi__pair_create(&s->A, s->multigrid, e, s->place, &s->pair));
   PetscCall(dvi__vector_create(s->A.comm, s->numbers * own, &s->solution));
   PetscCall(VecDuplicate(s->solution, &s->residual));
@@ -290,6 +296,7 @@ static void destroy(void *of)
   (void)SNESDestroy(&s->snes);
   (void)dvi__pair_clear(&s->pair);
   (void)dvi__multigrid_destroy(&s->multigrid);
+  (void)dvi__edges_destroy(&s->edges);
   (void)MatDestroy(&s->jacobian);
   (void)VecDestroy(&s->solution);
   (void)VecDestroy(&s->residual);

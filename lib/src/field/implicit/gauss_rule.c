@@ -41,8 +41,8 @@ static dvi_status residual(void *of, const double *x, double *r)
   const double h = s->h, *F1 = s->force[0], *F2 = s->force[1];
   DVI_TRY(find_forces(s, x));
   for (int64_t i = 0; i < n; i++) {
-    const double m = f->mass.value[i], p = s->p[f->unknown[i]], Z1 = x[i], Z2 = stretch * x[n + i],
-                 rest = h * 2 * root_rest * p,
+    const double m = f->mass.value[i], p = s->from->p[f->unknown[i]], Z1 = x[i],
+                 Z2 = stretch * x[n + i], rest = h * 2 * root_rest * p,
                  first = m * (6 * Z1 + minus * Z2) + h * (h * F1[i] - 2 * root * p),
                  second = m * (6 * Z2 - plus * Z1) + h * (h * F2[i] + 2 * root * p);
     r[i] = (first + (m * minus_rest * Z2 - rest)) / 12;
@@ -75,7 +75,7 @@ static dvi_status begin(dvi__implicit_step *s)
   const dvi_field *f = s->field;
   const double first = (3 - root) / 6, second = (3 + root) / 6 / stretch;
   for (int64_t i = 0; i < f->unknowns; i++) {
-    const double way = s->h * (s->p[f->unknown[i]] / f->mass.value[i]);
+    const double way = s->h * (s->from->p[f->unknown[i]] / f->mass.value[i]);
     s->x[i] = first * way;
     s->x[f->unknowns + i] = second * way;
   }

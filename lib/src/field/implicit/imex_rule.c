@@ -18,7 +18,7 @@ static dvi_status residual(void *of, const double *x, double *r)
   dvi_matrix_multiply(&K, 0, x, r);
   for (int64_t i = 0; i < f->unknowns; i++)
     r[i] = f->mass.value[i] * x[i] + h * h / 4 * r[i] -
-           h * (s->p[f->unknown[i]] - h / 2 * s->force[0][i]);
+           h * (s->from->p[f->unknown[i]] - h / 2 * s->force[0][i]);
   return DVI_OK;
 }
 
@@ -34,7 +34,7 @@ static dvi_status begin(dvi__implicit_step *s)
   if (!s->knows_force) DVI_TRY(dvi__implicit_force(s, 1, NULL, s->force[0]));
   s->knows_force = 1;
   for (int64_t i = 0; i < f->unknowns; i++)
-    s->x[i] = s->h * (s->p[f->unknown[i]] / f->mass.value[i]);
+    s->x[i] = s->h * (s->from->p[f->unknown[i]] / f->mass.value[i]);
   return DVI_OK;
 }
 

@@ -1,4 +1,4 @@
-/* Marches of fields on shares of a mesh by implicit steps (field/implicit/step.h). All
+/* The implicit midpoint rule for fields on shares of a mesh (field/implicit/midpoint_step.h). All
  * steps of a march are equal. What is asked for at a time between them is the end of a shorter step
  * from the last one on, which is made beside the state. */
 #include "field/implicit/march.h"
@@ -9,33 +9,18 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "field/implicit/step.h"
+#include "field/implicit/state.h"
 #include "field/mesh/share.h"
-#include "field/step/observables.h"
 #include "field/step/saved.h"
-
-typedef struct implicit {
-  const dvi__march_kind *kind;
-  const dvi__rule *rule;
-  const dvi_field *field;
-  dvi_matrix d;
-  dvi__implicit_step *step, *shorter; /* the latter is made where it is needed */
-  dvi__march_place at;
-  double *numbers;
-  dvi__implicit_state last, shown; /* at t_n, and at the march's time */
-  dvi__charge charge;
-  double *E, *spare; /* [cells] */
-  int is_lost;       /* processes could not give each other their values */
-} implicit;
 
 /* ---- steps ---- */
 
-static double time_of(const implicit *m, int64_t n)
+static double time_of(const dvi__implicit_march *m, int64_t n)
 {
   return m->at.t0 + (double)n * m->at.dt;
 }
 
-static dvi_status explain(const dvi__implicit_step *s, const implicit *m, dvi_status status,
+static dvi_status explain(const dvi__implicit_march *m, double h, dvi_status status,
                           const dvi__elliptic_report *report)
 {
   if (status == DVI_NOT_CONVERGED)
@@ -47,46 +32,55 @@ static dvi_status explain(const dvi__implicit_step *s, const implicit *m, dvi_st
   return dvi__fail_in(status,
                       "march: %s: step %lld from t = %.9g with h = %.6g failed; the state is "
                       "unchanged, try a smaller step",
-                      m->kind->name, (long long)m->at.n + 1, m->last.t, s->h);
+                      m->kind->name, (long long)m->at.n + 1, m->last.t, h);
 }
 
-/* Set what is shown to the end of a step from t_n on. */
-static dvi_status take(implicit *m, dvi__implicit_step *s)
+/* Set what is shown to the end of a step of h from t_n on. */
+static dvi_status take(dvi__implicit_march *m, double h, dvi__implicit_step *s)
 {
   dvi__elliptic_report report;
   const dvi_status status = dvi__implicit_take(s, &m->last, &m->shown, &m->is_lost, &report);
-  return status == DVI_OK || m->is_lost ? status : explain(s, m, status, &report);
+  return status == DVI_OK || m->is_lost ? status : explain(m, h, status, &report);
 }
 
-static void copy(const implicit *m, const dvi__implicit_state *from, dvi__implicit_state *to)
+static void copy(const dvi__implicit_march *m, const dvi__implicit_state *from,
+                 dvi__implicit_state *to)
 {
   const dvi_field *f = m->field;
   memcpy(to->q, from->q, (size_t)f->cells * sizeof *to->q);
   memcpy(to->p, from->p, (size_t)f->cells * sizeof *to->p);
+  memcpy(to->B, from->B, (size_t)m->faces * sizeof *to->B);
   memcpy(to->delivered, from->delivered, (size_t)f->currents * sizeof *to->delivered);
   to->t = from->t;
 }
 
-static dvi_status step(implicit *m)
+static dvi_status step(dvi__implicit_march *m)
 {
-  DVI_TRY(take(m, m->step));
+  DVI_TRY(take(m, m->at.dt, m->step));
   m->at.t = m->shown.t = time_of(m, ++m->at.n);
   copy(m, &m->shown, &m->last);
   return DVI_OK;
 }
 
+static dvi_status create_step(const dvi__implicit_march *m, double h, dvi__implicit_step **made)
+{
+  const dvi__implicit_step wanted = {
+      .field = m->field, .rule = m->rule, .sweep = m->field->is_wave ? NULL : &m->sweep, .h = h};
+  return dvi__implicit_step_create(&wanted, made);
+}
+
 /* Show the end of a step of another length. */
-static dvi_status step_aside(implicit *m, double h)
+static dvi_status step_aside(dvi__implicit_march *m, double h)
 {
   if (m->shorter != NULL && m->shorter->h != h) dvi__implicit_step_destroy(&m->shorter);
-  if (m->shorter == NULL) DVI_TRY(dvi__implicit_step_create(m->field, m->rule, h, &m->shorter));
+  if (m->shorter == NULL) DVI_TRY(create_step(m, h, &m->shorter));
   m->shorter->knows_force = 0;
-  return take(m, m->shorter);
+  return take(m, h, m->shorter);
 }
 
 static dvi_status advance(void *self, double t)
 {
-  implicit *m = self;
+  dvi__implicit_march *m = self;
   const double rounding = 8 * DBL_EPSILON * fmax(fabs(t), fabs(m->at.t0));
   while (time_of(m, m->at.n + 1) <= t + rounding) DVI_TRY(step(m));
   if (t > m->last.t + rounding)
@@ -99,7 +93,8 @@ static dvi_status advance(void *self, double t)
 
 /* ---- a start ---- */
 
-static void fill(const implicit *m, const dvi_march_state *state, dvi__implicit_state *first)
+static void fill(const dvi__implicit_march *m, const dvi_march_state *state,
+                 dvi__implicit_state *first)
 {
   const dvi_field *f = m->field;
   memcpy(first->q, f->fixed, (size_t)f->cells * sizeof *first->q);
@@ -113,153 +108,52 @@ static void fill(const implicit *m, const dvi_march_state *state, dvi__implicit_
   first->t = state->t;
 }
 
-/* Give E. Of others' cells the mass may lack a part here. */
-static double E_at(const implicit *m, int64_t cell)
+/* Set B to what is given, of each cell by its owner, or to dA. */
+static dvi_status fill_B(const dvi__implicit_march *m, const double *given,
+                         dvi__implicit_state *first)
 {
-  const int i = m->field->number[cell];
-  return i < 0 ? 0 : -m->shown.p[cell] / m->field->mass.value[i];
-}
-
-static const double *find_E(const implicit *m)
-{
-  for (int64_t c = 0; c < m->field->cells; c++) m->E[c] = E_at(m, c);
-  return m->E;
-}
-
-/* Give the integral of E, up to a constant, or NULL without losses that move charge. */
-static const double *integral_of_E(const implicit *m)
-{
-  if (!m->field->is_damped) return NULL;
-  for (int64_t c = 0; c < m->field->cells; c++) m->spare[c] = -m->shown.q[c];
-  return m->spare;
+  const dvi_field *f = m->field;
+  for (int64_t b = 0; b < m->faces; b++)
+    first->B[b] = given != NULL ? given[b] : dvi__sweep_d(&m->sweep, b, first->q);
+  return m->faces > 0 ? dvi__refresh(f->mesh, f->degree + 1, first->B) : DVI_OK;
 }
 
 static dvi_status start(void *self, const dvi_march_state *state)
 {
-  implicit *m = self;
+  dvi__implicit_march *m = self;
   const dvi_field *f = m->field;
-  if (state->B != NULL)
-    return dvi__agree(f->mesh, dvi__fail(DVI_UNSUPPORTED, "march: %s starts from A and E; B is dA",
-                                         m->kind->name));
+  if (state->B != NULL && f->is_wave)
+    return dvi__agree(
+        f->mesh, dvi__fail(DVI_UNSUPPORTED, "march: %s starts waves from A and E", m->kind->name));
   m->at.t0 = m->at.t = state->t;
   m->at.n = 0;
   m->step->knows_force = 0;
   fill(m, state, &m->last);
   dvi_status status = dvi__refresh(f->mesh, f->degree, m->last.q);
   if (status == DVI_OK) status = dvi__refresh(f->mesh, f->degree, m->last.p);
+  if (status == DVI_OK) status = fill_B(m, state->B, &m->last);
   m->is_lost = status != DVI_OK;
   copy(m, &m->last, &m->shown);
-  if (status == DVI_OK) dvi__charge_start(&m->charge, find_E(m), integral_of_E(m));
+  if (status == DVI_OK) dvi__implicit_begin_charge(m);
   return status;
 }
 
-/* ---- what can be seen ---- */
+/* ---- what it is ---- */
 
 static double time(const void *self)
 {
-  return ((const implicit *)self)->at.t;
+  return ((const dvi__implicit_march *)self)->at.t;
 }
 
 static int64_t size(const void *self, dvi_march_form form)
 {
-  const implicit *m = self;
-  return form == DVI_FORM_B ? m->d.rows : m->field->cells;
-}
-
-static double B_at(const implicit *m, int64_t cell)
-{
-  double sum = 0;
-  for (int64_t e = dvi__first_entry(&m->d, cell); e < dvi__first_entry(&m->d, cell + 1); e++)
-    sum += m->d.sign[e] * m->shown.q[m->d.column[e]];
-  return sum;
-}
-
-static dvi_status sample(const void *self, dvi_march_form form, int64_t count, const int *cell,
-                         double *values)
-{
-  const implicit *m = self;
-  for (int64_t i = 0; i < count; i++) {
-    const int64_t c = cell != NULL ? cell[i] : i;
-    values[i] = form == DVI_FORM_A ? m->shown.q[c] : form == DVI_FORM_E ? E_at(m, c) : B_at(m, c);
-  }
-  return DVI_OK;
-}
-
-/* Take E of others' cells from them. */
-static dvi_status show(const void *self, dvi_march_form form, int64_t count, const int *cell,
-                       double *values)
-{
-  const implicit *m = self;
-  const dvi_field *f = m->field;
-  if (form == DVI_FORM_E && cell != NULL)
-    DVI_TRY(dvi__check_owned(f->mesh, f->degree, count, cell));
-  DVI_TRY(sample(self, form, count, cell, values));
-  if (form != DVI_FORM_E || cell != NULL) return DVI_OK;
-  return dvi__refresh(f->mesh, f->degree, values);
-}
-
-/* Add w V of own unknowns. */
-static dvi_status add_density(const implicit *m, dvi__block_sum *sum)
-{
-  const dvi_field *f = m->field;
-  if (f->potential.density == NULL) return DVI_OK;
-  for (int64_t i = 0; i < f->unknowns; i++) m->spare[i] = m->shown.q[f->unknown[i]];
-  for (int64_t i = 0; i < f->unknowns; i++) {
-    double value;
-    if (!dvi__owns(f->mesh, f->degree, f->unknown[i])) continue;
-    const int failed = dvi__field_density(f, m->spare, i, i + 1, &(dvi__density){.sum = &value});
-    if (failed != 0) return dvi__implicit_refuse(failed);
-    dvi__block_sum_add(sum, value);
-  }
-  return DVI_OK;
-}
-
-/* p.M^-1 p/2 + q.(K q/2 - load) + the sum of w V, and the energy of the fixed values. */
-static dvi_status energy(const void *self, double *value)
-{
-  const implicit *m = self;
-  const dvi_field *f = m->field;
-  const double *q = m->shown.q, *p = m->shown.p;
-  dvi__block_sum sum = {.count = 0};
-  for (int64_t i = 0; i < f->unknowns; i++) {
-    const int c = f->unknown[i];
-    if (!dvi__owns(f->mesh, f->degree, c)) continue;
-    const double v = p[c] / f->mass.value[i], half = 0.5 * dvi__field_row(f, &f->stiffness, i, q);
-    dvi__block_sum_add(&sum, 0.5 * p[c] * v);
-    dvi__block_sum_add(&sum, q[c] * (half - f->load[i]));
-  }
-  DVI_TRY(dvi__agree(f->mesh, add_density(m, &sum)));
-  DVI_TRY(dvi__sum_of_all(f->mesh, dvi__block_sum_end(&sum), value));
-  *value += f->rest;
-  return DVI_OK;
-}
-
-static dvi_status charge_error(const void *self, double *error)
-{
-  const implicit *m = self;
-  return dvi__charge_error(&m->charge, find_E(m), integral_of_E(m), error);
-}
-
-static int observables(const void *self)
-{
-  return dvi__field_observables(((const implicit *)self)->field);
-}
-
-static const char *observable(const void *self, int i)
-{
-  return dvi__field_observable(((const implicit *)self)->field, i);
-}
-
-static dvi_status observe(const void *self, int i, double *value)
-{
-  const dvi__observed march = {
-      .sample = sample, .energy = energy, .charge_error = charge_error, .of = self};
-  return dvi__field_observe(((const implicit *)self)->field, &march, i, value);
+  const dvi__implicit_march *m = self;
+  return form == DVI_FORM_B ? m->sweep.faces : m->field->cells;
 }
 
 static void facts(const void *self, dvi_march_facts *facts)
 {
-  const implicit *m = self;
+  const dvi__implicit_march *m = self;
   *facts = (dvi_march_facts){.step = m->at.dt,
                              .longest = m->at.dt,
                              .bound = (double)INFINITY,
@@ -270,15 +164,17 @@ static void facts(const void *self, dvi_march_facts *facts)
 
 /* ---- files ---- */
 
-enum { VERSION = 2, PIECES = 6 };
+enum { VERSION = 2, PIECES = 8 };
 
-static dvi__saved_march saved_of(const implicit *m, dvi__piece piece[PIECES])
+static dvi__saved_march saved_of(const dvi__implicit_march *m, dvi__piece piece[PIECES])
 {
   const dvi_field *f = m->field;
   double *const forms[] = {m->last.q, m->last.p, m->shown.q, m->shown.p};
   for (int i = 0; i < 4; i++) piece[i] = (dvi__piece){f->degree, f->cells, forms[i]};
-  piece[4] = (dvi__piece){-1, 2 * (int64_t)f->currents, m->last.delivered};
-  piece[5] = (dvi__piece){f->degree - 1, dvi__charge_numbers(f) - f->currents, m->charge.start};
+  piece[4] = (dvi__piece){f->degree + 1, m->faces, m->last.B};
+  piece[5] = (dvi__piece){f->degree + 1, m->faces, m->shown.B};
+  piece[6] = (dvi__piece){-1, 2 * (int64_t)f->currents, m->last.delivered};
+  piece[7] = (dvi__piece){f->degree - 1, dvi__charge_numbers(f) - f->currents, m->charge.start};
   return (dvi__saved_march){.method = m->rule->name,
                             .version = VERSION,
                             .mesh = f->mesh,
@@ -296,7 +192,7 @@ static dvi_status save(const void *self, dvi__sections_writer *writer)
 
 static dvi_status load(void *self, const dvi__sections *sections)
 {
-  implicit *m = self;
+  dvi__implicit_march *m = self;
   dvi__piece piece[PIECES];
   const dvi__saved_march march = saved_of(m, piece);
   DVI_TRY(dvi__saved_march_take(&march, sections));
@@ -308,60 +204,66 @@ static dvi_status load(void *self, const dvi__sections *sections)
 
 static dvi_status agree(const void *self, dvi_status status)
 {
-  return dvi__agree(((const implicit *)self)->field->mesh, status);
+  return dvi__agree(((const dvi__implicit_march *)self)->field->mesh, status);
 }
 
 static int is_lost(const void *self)
 {
-  return ((const implicit *)self)->is_lost;
+  return ((const dvi__implicit_march *)self)->is_lost;
 }
 
 static int writes(const void *self)
 {
-  return dvi__is_first(((const implicit *)self)->field->mesh);
+  return dvi__is_first(((const dvi__implicit_march *)self)->field->mesh);
 }
 
 /* ---- create ---- */
 
 static void destroy(void *self)
 {
-  implicit *m = self;
+  dvi__implicit_march *m = self;
   if (m == NULL) return;
   dvi__implicit_step_destroy(&m->step);
   dvi__implicit_step_destroy(&m->shorter);
   dvi__charge_clear(&m->charge);
+  dvi__sweep_clear(&m->sweep);
   dvi__release(m->numbers);
   dvi__release(m);
 }
 
 /* Lay the states out in one block. */
-static dvi_status make_own(implicit *m)
+static dvi_status make_own(dvi__implicit_march *m)
 {
   const dvi_field *f = m->field;
   double **const forms[] = {&m->last.q, &m->last.p, &m->shown.q, &m->shown.p, &m->E, &m->spare};
-  DVI_TRY(dvi_mesh_incidence(f->mesh, f->degree, &m->d));
-  m->numbers = DVI_NEW(double, 6 * f->cells + f->currents + dvi__charge_numbers(f));
+  DVI_TRY(dvi__sweep_create(f, 1, &m->sweep));
+  m->faces = f->is_wave ? 0 : m->sweep.faces;
+  m->numbers = DVI_NEW(double, 6 * f->cells + 2 * m->faces + f->currents + dvi__charge_numbers(f));
   if (m->numbers == NULL) return dvi__fail(DVI_NO_MEMORY, "march: no memory for a state");
   for (int i = 0; i < 6; i++) *forms[i] = m->numbers + i * f->cells;
-  m->last.delivered = m->numbers + 6 * f->cells;
+  m->last.B = m->numbers + 6 * f->cells;
+  m->shown.B = m->last.B + m->faces;
+  m->last.delivered = m->shown.B + m->faces;
   m->shown.delivered = m->last.delivered + f->currents;
   return dvi__charge_create(f, m->shown.delivered, &m->charge);
 }
 
-static dvi_status make(implicit *m)
+static dvi_status make(dvi__implicit_march *m)
 {
-  DVI_TRY(dvi__agree(m->field->mesh, make_own(m)));
-  DVI_TRY(dvi__implicit_step_create(m->field, m->rule, m->at.dt, &m->step));
-  return dvi__field_hash(m->field, &m->at.hash);
+  const dvi_field *f = m->field;
+  DVI_TRY(dvi__agree(f->mesh, make_own(m)));
+  DVI_TRY(dvi__refresh(f->mesh, f->degree + 1, m->sweep.weight));
+  DVI_TRY(create_step(m, m->at.dt, &m->step));
+  return dvi__field_hash(f, &m->at.hash);
 }
 
 /* The same functions by the name of each method. */
-#define KIND(NAME)                                                                        \
-  {                                                                                       \
-    .name = (NAME), .destroy = destroy, .start = start, .advance = advance, .time = time, \
-    .size = size, .sample = show, .observables = observables, .observable = observable,   \
-    .observe = observe, .facts = facts, .save = save, .load = load, .agree = agree,       \
-    .writes = writes, .is_lost = is_lost,                                                 \
+#define KIND(NAME)                                                                            \
+  {                                                                                           \
+    .name = (NAME), .destroy = destroy, .start = start, .advance = advance, .time = time,     \
+    .size = size, .sample = dvi__implicit_sample, .observables = dvi__implicit_observables,   \
+    .observable = dvi__implicit_observable, .observe = dvi__implicit_observe, .facts = facts, \
+    .save = save, .load = load, .agree = agree, .writes = writes, .is_lost = is_lost,         \
   }
 
 static const dvi__march_kind kinds[] = {[DVI__IMPLICIT_MIDPOINT] = KIND("midpoint"),
@@ -371,7 +273,7 @@ static const dvi__march_kind kinds[] = {[DVI__IMPLICIT_MIDPOINT] = KIND("midpoin
 dvi_status dvi__implicit_create(const dvi_field *field, const dvi__implicit_plan *plan,
                                 dvi_march **march)
 {
-  implicit *m = DVI_NEW(implicit, 1);
+  dvi__implicit_march *m = DVI_NEW(dvi__implicit_march, 1);
   dvi_status status = dvi__agree(field->mesh,
                                  m != NULL ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "march: no memory"));
   if (status == DVI_OK) {

@@ -62,16 +62,23 @@ static dvi_status read_options(const char *options, const dvi__rule **rule)
 
 /* ---- create ---- */
 
-static dvi_status check_field(const dvi_field *field, const char *method)
+static dvi_status check_share(const dvi_field *field, const char *method)
 {
   if (field->mesh->share == NULL)
     return dvi__fail(DVI_UNSUPPORTED,
                      "march: %s is a march of shares (dvi_mesh_cut); a whole mesh has it by "
                      "dvi_field_system",
                      method);
+  return DVI_OK;
+}
+
+static dvi_status check_wave(const dvi_field *field, const char *method)
+{
+  DVI_TRY(check_share(field, method));
   if (!field->is_wave)
     return dvi__fail(DVI_UNSUPPORTED,
-                     "march: %s on shares is for waves, and this field is Maxwell's: take leapfrog",
+                     "march: %s on shares is for waves, and this field is Maxwell's: take midpoint "
+                     "or leapfrog",
                      method);
   return DVI_OK;
 }
@@ -95,7 +102,7 @@ dvi_status dvi__midpoint_create(const dvi_field *field, const dvi__march_plan *p
                                 dvi_march **march)
 {
   dvi__implicit_plan chosen = {.method = DVI__IMPLICIT_MIDPOINT, .rule = &dvi__midpoint_rule};
-  DVI_TRY(check_field(field, "midpoint"));
+  DVI_TRY(check_share(field, "midpoint"));
   DVI_TRY(dvi__refuse_options("midpoint", plan));
   return create(field, plan, &chosen, march);
 }
@@ -103,7 +110,7 @@ dvi_status dvi__midpoint_create(const dvi_field *field, const dvi__march_plan *p
 dvi_status dvi__imex_create(const dvi_field *field, const dvi__march_plan *plan, dvi_march **march)
 {
   dvi__implicit_plan chosen = {.method = DVI__IMPLICIT_IMEX, .rule = &dvi__imex_rule};
-  DVI_TRY(check_field(field, "imex"));
+  DVI_TRY(check_wave(field, "imex"));
   DVI_TRY(dvi__refuse_options("imex", plan));
   return create(field, plan, &chosen, march);
 }
@@ -112,7 +119,7 @@ dvi_status dvi__galerkin_create(const dvi_field *field, const dvi__march_plan *p
                                 dvi_march **march)
 {
   dvi__implicit_plan chosen = {.method = DVI__IMPLICIT_GALERKIN};
-  DVI_TRY(check_field(field, "galerkin"));
+  DVI_TRY(check_wave(field, "galerkin"));
   DVI_TRY(read_options(plan->options, &chosen.rule));
   return create(field, plan, &chosen, march);
 }

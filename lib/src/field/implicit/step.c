@@ -28,7 +28,7 @@ static void stand_at(dvi__implicit_step *s, double by, const double *x)
 {
   const dvi_field *f = s->field;
   for (int64_t i = 0; i < f->unknowns; i++)
-    s->place[i] = x != NULL ? s->q[f->unknown[i]] + by * x[i] : s->q[f->unknown[i]];
+    s->place[i] = x != NULL ? s->from->q[f->unknown[i]] + by * x[i] : s->from->q[f->unknown[i]];
 }
 
 dvi_status dvi__implicit_force(dvi__implicit_step *s, double by, const double *x, double *force)
@@ -69,15 +69,14 @@ static dvi_status solve(dvi__implicit_step *s, dvi__elliptic_report *report)
   return s->rule->end != NULL ? dvi__agree(mesh, s->rule->end(s)) : DVI_OK;
 }
 
-static dvi_status move(const dvi__implicit_step *s, const dvi__implicit_state *from,
-                       dvi__implicit_state *to)
+static dvi_status move(const dvi__implicit_step *s, dvi__implicit_state *to)
 {
   const dvi_field *f = s->field;
-  memcpy(to->q, from->q, (size_t)f->cells * sizeof *to->q);
-  memcpy(to->p, from->p, (size_t)f->cells * sizeof *to->p);
+  memcpy(to->q, s->from->q, (size_t)f->cells * sizeof *to->q);
+  memcpy(to->p, s->from->p, (size_t)f->cells * sizeof *to->p);
   for (int64_t i = 0; i < f->unknowns; i++)
     s->rule->move(s, i, to->q + f->unknown[i], to->p + f->unknown[i]);
-  for (int c = 0; c < f->currents; c++) to->delivered[c] = from->delivered[c] + s->h * s->signal[c];
+  if (s->rule->move_rest != NULL) s->rule->move_rest(s, to);
   return dvi__refresh(f->mesh, f->degree, to->p);
 }
 
@@ -85,11 +84,9 @@ dvi_status dvi__implicit_take(dvi__implicit_step *step, const dvi__implicit_stat
                               dvi__implicit_state *to, int *is_lost, dvi__elliptic_report *report)
 {
   *report = (dvi__elliptic_report){0};
-  step->t = from->t;
-  step->q = from->q;
-  step->p = from->p;
+  step->from = from;
   DVI_TRY(solve(step, report));
-  const dvi_status status = move(step, from, to);
+  const dvi_status status = move(step, to);
   *is_lost = status != DVI_OK;
   return status;
 }
@@ -102,6 +99,7 @@ void dvi__implicit_step_destroy(dvi__implicit_step **made)
   if (s == NULL) return;
   dvi__on_all_clear(&s->solver);
   dvi__release(s->x);
+  dvi__release(s->form);
   dvi__release(s->loss);
   dvi__release(s);
   *made = NULL;
@@ -121,30 +119,38 @@ static dvi_status take_losses(dvi__implicit_step *s)
   return DVI_OK;
 }
 
-static dvi_status allocate(const dvi_field *f, const dvi__rule *rule, double h,
-                           dvi__implicit_step **made)
+static dvi_status allocate(dvi__implicit_step *s)
 {
-  dvi__implicit_step *s = *made = DVI_NEW(dvi__implicit_step, 1);
-  if (s != NULL) s->x = DVI_NEW(double, (rule->numbers + 2 + rule->forces) * f->unknowns);
-  if (s == NULL || s->x == NULL) return dvi__fail(DVI_NO_MEMORY, "march: no memory for a step");
-  s->field = f;
-  s->rule = rule;
-  s->h = h;
+  const dvi_field *f = s->field;
+  const dvi__rule *rule = s->rule;
+  s->x = DVI_NEW(double, (rule->numbers + 2 + rule->forces) * f->unknowns);
+  if (s->sweep != NULL) s->form = DVI_NEW(double, f->cells + s->sweep->faces);
+  if (s->x == NULL || (s->sweep != NULL && s->form == NULL))
+    return dvi__fail(DVI_NO_MEMORY, "march: no memory for a step");
   s->place = s->x + rule->numbers * f->unknowns;
   s->work = s->place + f->unknowns;
   for (int k = 0; k < rule->forces; k++) s->force[k] = s->work + (k + 1) * f->unknowns;
+  if (s->sweep != NULL) s->H = s->form + f->cells;
   return take_losses(s);
 }
 
-dvi_status dvi__implicit_step_create(const dvi_field *field, const dvi__rule *rule, double h,
-                                     dvi__implicit_step **made)
+static dvi_status make(dvi__implicit_step *s)
 {
-  *made = NULL;
-  dvi_status status = dvi__agree(field->mesh, allocate(field, rule, h, made));
-  if (status == DVI_OK && *made != NULL) {
-    dvi__field_equations equations = {.field = field, .mass = 1, .of = *made};
-    rule->equations(*made, &equations);
-    status = dvi__on_all_create(&equations, &(*made)->solver);
+  dvi__field_equations equations = {.field = s->field, .mass = 1, .of = s};
+  DVI_TRY(dvi__agree(s->field->mesh, allocate(s)));
+  s->rule->equations(s, &equations);
+  return dvi__on_all_create(&equations, &s->solver);
+}
+
+dvi_status dvi__implicit_step_create(const dvi__implicit_step *wanted, dvi__implicit_step **made)
+{
+  dvi__implicit_step *s = *made = DVI_NEW(dvi__implicit_step, 1);
+  dvi_status status = dvi__agree(
+      wanted->field->mesh,
+      s != NULL ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "march: no memory for a step"));
+  if (status == DVI_OK && s != NULL) {
+    *s = *wanted;
+    status = make(s);
   }
   if (status != DVI_OK) dvi__implicit_step_destroy(made);
   return status;

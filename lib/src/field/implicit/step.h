@@ -1,36 +1,43 @@
 /* Steps on shares of a mesh whose equations all processes solve together (field/model/on_all.h).
- * With the potential V, the load and currents J of a field they have forces
+ * With the potential V and the load of a field they have forces
  *
- *     F(q) = K q - load + w V_u(q). */
+ *     F(q) = K q - load + w V_u(q).
+ *
+ * Of Maxwell's fields K q = d^T M_{k+1} B, and B = dA has steps of its own. So no rounding grows
+ * with A, whose static fields are gradients that grow with time, and F has no charge but where
+ * numbers are added to p. */
 #ifndef DVI_FIELD_IMPLICIT_STEP_H
 #define DVI_FIELD_IMPLICIT_STEP_H
 #include "field/model/on_all.h"
+#include "field/step/sweep.h"
 
 enum { DVI__FORCES = 2 }; /* that a rule holds at a time */
 
 typedef struct dvi__rule dvi__rule;
 
+/* A state at a time. Values of others' cells are refreshed. */
+typedef struct dvi__implicit_state {
+  double t;
+  double *q, *p;     /* [cells] the form, and its momentum */
+  double *B;         /* [faces] of Maxwell's fields */
+  double *delivered; /* [currents] integrals of the signals since the start */
+} dvi__implicit_state;
+
 typedef struct dvi__implicit_step {
   const dvi_field *field;
   const dvi__rule *rule;
+  const dvi__sweep *sweep; /* of Maxwell's fields, with the weights of all faces, or NULL */
   double h;
   dvi__on_all solver;
-  double t;                     /* of the start */
-  const double *q, *p;          /* [cells] the start */
+  const dvi__implicit_state *from;
   double signal[DVI__CURRENTS]; /* of currents, in this step */
   double *x;                    /* [numbers*unknowns] what the equations are solved for */
   double *place, *work;         /* [unknowns] */
   double *force[DVI__FORCES];   /* [unknowns] */
+  double *form, *H;             /* [cells], [faces] of Maxwell's fields */
   double *loss;                 /* [unknowns] the diagonal of S, or NULL without one */
   int knows_force;              /* the first force is that at the start, of the last step's end */
 } dvi__implicit_step;
-
-/* A state at a time, of cells. */
-typedef struct dvi__implicit_state {
-  double t;
-  double *q, *p;     /* [cells] the form, and its momentum. Those of others are refreshed */
-  double *delivered; /* [currents] integrals of the signals since the start */
-} dvi__implicit_state;
 
 /* How a step is taken. */
 struct dvi__rule {
@@ -45,13 +52,15 @@ struct dvi__rule {
   dvi_status (*end)(dvi__implicit_step *s);
   /* Move q and p of the unknown i. */
   void (*move)(const dvi__implicit_step *s, int64_t i, double *q, double *p);
+  /* Move B and what currents have delivered. NULL for rules of waves alone. */
+  void (*move_rest)(const dvi__implicit_step *s, dvi__implicit_state *to);
 };
 
 extern const dvi__rule dvi__midpoint_rule, dvi__imex_rule, dvi__gauss_rule;
 
-/* Prepare steps of a length. Called on all processes. On failure nothing is owned. */
-dvi_status dvi__implicit_step_create(const dvi_field *field, const dvi__rule *rule, double h,
-                                     dvi__implicit_step **made);
+/* Prepare steps with the field, rule, sweep and h of `wanted`. Called on all processes. On failure
+ * nothing is owned. */
+dvi_status dvi__implicit_step_create(const dvi__implicit_step *wanted, dvi__implicit_step **made);
 void dvi__implicit_step_destroy(dvi__implicit_step **made);
 
 /* Make a step. It begins where the last one ended, unless knows_force is 0. On failure `to` stays

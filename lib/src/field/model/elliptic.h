@@ -8,16 +8,16 @@
 /* Equations r(x) = 0 with the Jacobian A + D(x), where A is positive definite or semidefinite, and
  * D is diagonal.
  *
- * Equations of pairs have two numbers of each unknown. x, r and d are [2*unknowns], and the
- * Jacobian with B = A - (1 - cosine) M is
+ * Equations of pairs have two numbers of each unknown, which is a vertex. x, r and d are
+ * [2*unknowns], and the Jacobian with B = A - (1 - cosine) M is
  *
  *     [ B + D_1    sine M     ]
  *     [ sine M    -(B + D_2) ],
  *
  * which is symmetric and indefinite. cosine^2 + sine^2 = 1.
  *
- * All arrays of unknowns have those of other processes, too, which the solver gives,
- * and which it does not ask for. */
+ * All arrays of unknowns have those of other processes, too, which the solver gives, and which it
+ * does not ask for. */
 typedef struct dvi__elliptic {
   const dvi_mesh *share;
   int degree;

@@ -1,5 +1,6 @@
 #include "field/step/saved.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "core/hash.h"
@@ -146,8 +147,20 @@ dvi_status dvi__check_same(const dvi_mesh *mesh, const char *name, size_t size,
 
 /* ---- marches of equal steps ---- */
 
+/* What is written is read again. */
+static dvi_status check_pieces(const dvi__saved_march *march)
+{
+  for (int i = 0; i < march->pieces; i++)
+    for (int64_t c = 0; c < march->piece[i].count; c++)
+      if (!isfinite(march->piece[i].value[c]))
+        return dvi__fail(DVI_NOT_FINITE, "march: its state has the number %g at t = %g",
+                         march->piece[i].value[c], march->at->t);
+  return DVI_OK;
+}
+
 dvi_status dvi__saved_march_put(const dvi__saved_march *march, dvi__sections_writer *writer)
 {
+  DVI_TRY(dvi__agree(march->mesh, check_pieces(march)));
   dvi__section_open(writer, march->method, march->version);
   dvi__section_put(writer, march->at, sizeof *march->at);
   dvi__section_open(writer, "forms", 1);

@@ -12,8 +12,7 @@ static bool is_called(const char *method, const char *name)
   return strncmp(method, name, length) == 0 && (method[length] == '\0' || method[length] == ':');
 }
 
-/* Tell if a method is one by which only shares of waves march. Whole meshes have it as systems do.
- */
+/* Tell if a method is one by which only shares march. Whole meshes have it as systems do. */
 static bool is_implicit(const char *method)
 {
   return is_called(method, "midpoint") || is_called(method, "imex") ||
@@ -27,7 +26,8 @@ int dvi_scene_marches(const dvi_scene *scene, const char *method)
   if (method == NULL) return 0;
   if (scene->density != NULL) return dvi__density_marches(scene, method);
   if (dvi__is_elastic(scene)) return dvi__elastic_marches(method);
-  if (dvi__is_share(scene) && is_implicit(method)) return scene->field->maxwell == NULL;
+  if (dvi__is_share(scene) && is_implicit(method))
+    return scene->field->maxwell == NULL || is_called(method, "midpoint");
   const char *name;
   for (int i = 0; (name = dvi_march_method_name(i)) != NULL; i++)
     if (is_called(method, name)) return 1;
