@@ -98,6 +98,12 @@ together 1 'is the state of an integrator, and of no march' kink.yaml --method m
 by 1 kink.yaml --method midpoint --h 0.05 --resume from2.state 2>err && fail "one goes on"
 says err 'it is the state of a march of a field' 'the state of two processes'
 
+# What a product by midpoint exchanges of Maxwell's fields are edges, which are more than cells.
+by=$(mpirun -np 3 "$dvi" explain torus.yaml --method midpoint --h 0.05 --csv shares.csv) ||
+  fail "explain by midpoint fails: $by"
+awk -F, 'NR > 1 && !($7 > 8 * $4) { bad++ } END { exit NR != 4 || bad }' shares.csv ||
+  fail "explain by midpoint: $(cat shares.csv)"
+
 # ---- steps of more processes ----
 
 # Solids, and meshes that no process reads as a whole.
