@@ -75,6 +75,16 @@ static dvi_status read_share(const char *path, dvi_mesh **share)
   return dvi_mesh_read_divided(path, &options, share, &division);
 }
 
+static dvi_status save(const dvi_march *march, const char *path)
+{
+  return dvi_march_write_divided(march, division, path);
+}
+
+static dvi_status load(dvi_march *march, const char *path)
+{
+  return dvi_march_read_divided(march, division, path);
+}
+
 static const dvi_yee_ranks *grid(void)
 {
   if (planes == NULL) (void)dvi_yee_ranks_create(MPI_COMM_WORLD, &planes);
@@ -251,6 +261,8 @@ const petsc_module dvi_petsc = {
     .divide = divide,
     .read = read_share,
     .write = dvi_mesh_write_divided,
+    .save = save,
+    .load = load,
     .grid = grid,
     .tell = tell,
     .modes = find_modes,

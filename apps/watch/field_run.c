@@ -111,6 +111,26 @@ static void warn_of_bound(journey *j)
       facts.step, facts.bound, dvi_march_time(j->march));
 }
 
+/* Refuse states in parts of marches that have none, and get ready for others. */
+static int prepare_states(const journey *j)
+{
+  const char *const path[] = {j->request->checkpoint, j->request->resume};
+  dvi_march_facts facts;
+  dvi_march_facts_of(j->march, &facts);
+  const bool has_parts = elastic_of(j->scene) != NULL || strcmp(facts.method, "leapfrog") == 0 ||
+                         strcmp(facts.method, "midpoint") == 0;
+  for (int i = 0; i < 2; i++) {
+    if (ranks_part_state(path[i]) && !has_parts)
+      return usage_error(
+          "run: '%s' is a state in parts by its name, which leapfrog and midpoint on "
+          "meshes and solids have, and %s has not; give another name",
+          path[i], facts.method);
+    const int code = ranks_prepare_state(path[i]);
+    if (code != DONE) return code;
+  }
+  return DONE;
+}
+
 static int make_march(journey *j)
 {
   const run_request *r = j->request;
@@ -120,10 +140,11 @@ static int make_march(journey *j)
                                      .span = r->t_end,
                                      .threads = (int)r->threads};
   dvi_march_facts facts;
-  const int code = open_march(j->scene, &options, &j->march);
+  int code = open_march(j->scene, &options, &j->march);
+  if (code == DONE) code = prepare_states(j);
   if (code != DONE) return code;
   if (r->resume != NULL) {
-    const dvi_status loaded = dvi_march_load(j->march, r->resume);
+    const dvi_status loaded = ranks_load(j->march, r->resume);
     if (loaded != DVI_OK) return refuse_state(loaded, j);
     if (dvi_march_time(j->march) > r->t_end)
       return usage_error("run: '%s' stands at t = %.17g, past --t-end %g", r->resume,
@@ -231,7 +252,7 @@ static bool save(journey *j)
   if (ranks_agree(row_output_flush(&j->out) ? DONE : FAILED) != DONE) return false;
   const double t = dvi_march_time(j->march), *before = j->is_saved ? &j->t_saved : NULL;
   run_tell_checkpoint(r, before, &t);
-  const dvi_status status = dvi_march_save(j->march, r->checkpoint);
+  const dvi_status status = ranks_save(j->march, r->checkpoint);
   if (status != DVI_OK) return library_error(status) == DONE;
   j->t_saved = t;
   j->is_saved = true;

@@ -77,10 +77,10 @@ paste -d , rows1.csv rows3.csv | awk -F , '
 goes_on() {
   first=$1 second=$2 file=part.$rows
   shift 2
-  rm -f "$file" a.state
-  by "$first" "$@" --t-end 0.4 --out $file --checkpoint a.state || fail "$*: $first fail"
-  same half.state a.state "$*: the checkpoint of $first"
-  by "$second" "$@" --t-end 1 --out $file --resume a.state || fail "$*: $second do not go on"
+  rm -f "$file" "a.$state"
+  by "$first" "$@" --t-end 0.4 --out $file --checkpoint "a.$state" || fail "$*: $first fail"
+  same "half.$state" "a.$state" "$*: the checkpoint of $first"
+  by "$second" "$@" --t-end 1 --out $file --resume "a.$state" || fail "$*: $second do not go on"
   if [ $rows = h5 ]; then
     "$dvi" plot $file --out part.svg >/dev/null 2>&1
     h5diff whole.h5 part.h5 rows || fail "$*: $first and then $second have other rows"
@@ -94,7 +94,7 @@ goes_on() {
 every_way() {
   by 1 "$@" --t-end 0.4 --out half.csv --checkpoint half.state || fail "$*: no checkpoint"
   by 1 "$@" --t-end 1 --out whole.csv || fail "$*: no run"
-  rows=csv
+  rows=csv state=state
   goes_on 1 3 "$@"
   goes_on 3 1 "$@"
   goes_on 2 4 "$@"
@@ -106,6 +106,29 @@ every_way() {
 }
 every_way wave.yaml --h 0.002 --every 4
 every_way grid.yaml --h 0.01 --every 5
+
+# in_parts SCENE OPTION...: the same with states in parts.
+in_parts() {
+  by 1 "$@" --t-end 0.4 --out half.csv --checkpoint half.h5 || fail "$*: no state in parts"
+  by 1 "$@" --t-end 1 --out whole.csv || fail "$*: no run"
+  rows=csv state=h5
+  goes_on 1 3 "$@"
+  goes_on 3 1 "$@"
+  goes_on 2 4 "$@"
+}
+in_parts block.yaml --h 0.01 --every 5
+in_parts wave.yaml --h 0.002 --every 4
+by 2 kink.yaml --method midpoint --h 0.05 --t-end 0.5 --out half.csv --checkpoint kink.h5
+by 3 kink.yaml --method midpoint --h 0.05 --t-end 1 --out rest.csv --resume kink.h5
+by 2 kink.yaml --method midpoint --h 0.05 --t-end 1 --out whole.csv
+{ cat half.csv; sed 1,2d rest.csv; } >joined.csv
+same whole.csv joined.csv 'midpoint in parts'
+cp half.state old.h5
+head -c 3000 half.h5 >cut.h5
+together 1 'it is no file of HDF5' wave.yaml --h 0.002 --resume old.h5
+together 1 'cut short' wave.yaml --h 0.002 --resume cut.h5
+together 1 'is of another field' wave.yaml --h 0.001 --resume half.h5
+together 2 'is a state in parts by its name.*and yee has not' grid.yaml --checkpoint a.h5
 every_way torus.yaml --h 0.004 --every 5
 together 1 'cannot read' wave.yaml --resume nowhere
 together 2 'half.state. stands at t = ' torus.yaml --h 0.004 --t-end 0.1 --resume half.state

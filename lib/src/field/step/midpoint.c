@@ -387,6 +387,7 @@ static const dvi__march_kind kind = {
     .agree = agree,
     .writes = writes,
     .is_lost = is_lost,
+    .has_parts = 1,
 };
 
 static dvi_status check_field(const dvi_field *field)
