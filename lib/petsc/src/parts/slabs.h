@@ -43,7 +43,8 @@ dvi_status dvi__slabs_read(const dvi__slabs *file, const dvi__slab *slab, void *
 dvi_status dvi__slabs_read_text(const dvi__slabs *file, const char *name, size_t size, char *text);
 
 /* Write a dataset of `total` rows, of which each process gives its own, maybe none. Or write a
- * whole one, a text or a group. All processes make these calls, and agree on failures afterwards. */
+ * whole one, a text or a group. All processes make these calls, and agree on failures
+ * afterwards. */
 dvi_status dvi__slabs_write_rows(const dvi__slabs *file, const dvi__slab *slab, int64_t total,
                                  const void *numbers);
 dvi_status dvi__slabs_write(const dvi__slabs *file, const dvi__slab *slab, const void *numbers);
