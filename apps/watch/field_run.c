@@ -332,19 +332,16 @@ static int travel(journey *j)
 
 static int start_frames(journey *j)
 {
-  const dvi_mesh *mesh = dvi_scene_mesh(j->scene->scene);
-  dvi_march_facts facts;
-  dvi_march_facts_of(j->march, &facts);
-  if (ranks_count() > 1 && strcmp(facts.method, "yee") == 0)
-    return usage_error("run: --pvd of a grid is written by one process alone; leave it out, or "
-                       "mpirun, or take --method leapfrog");
+  /* the first process alone draws a grid without a mesh */
+  const bool draws = ranks_is_first() || dvi_scene_grid_only(j->scene->scene) == NULL;
+  const dvi_mesh *mesh = draws ? dvi_scene_mesh(j->scene->scene) : NULL;
   const int code = frames_start(&j->frames, j->scene->name, mesh, j->request->pvd);
   if (code != DONE) return code;
   const dvi_density *density = density_of(j->scene);
   const int n = dvi_mesh_dimension(mesh);
   const int64_t cells = dvi_mesh_count(mesh, n), vertices = dvi_mesh_count(mesh, 0),
                 numbers = density != NULL ? density_coefficients(density) + field_unknowns(j->scene)
-                                          : 6 * cells + 2 * n * vertices;
+                                          : 6 * cells + 2 * n * vertices + 1;
   j->vector = calloc((size_t)numbers, sizeof *j->vector);
   if (j->vector != NULL && density != NULL) return density_views_make(j->scene, 1, &j->views);
   if (j->vector != NULL) return DONE;
