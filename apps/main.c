@@ -7,21 +7,49 @@
 #include "cli/command.h"
 #include "cli/signals.h"
 #include "cli/spelling.h"
+#include "cli/started.h"
 
 typedef struct subcommand {
   const char *name;
   int (*run)(int argc, char **argv);
+  /* what to do instead of starting several processes, NULL if they share the work */
+  const char *alone;
+  const char *part; /* the option by which each of them has its own, or NULL */
 } subcommand;
 
+/* What several processes do together is told by docs/fields/processes.md. */
+static const char alone[] = "leave mpirun out",
+                  by_threads[] = "leave mpirun out: its threads take all cores",
+                  by_parts[] = "leave mpirun out, and share the points by --part K/N",
+                  by_methods[] = "leave mpirun out, and start it once for each method",
+                  of_meshes[] = "leave mpirun out, and let dvi run share the mesh.h5 that --write "
+                                "makes";
+
 static const subcommand subcommands[] = {
-    {"list", list_command},           {"explain", explain_command},     {"run", run_command},
-    {"order", order_command},         {"bench", bench_command},         {"path", path_command},
-    {"control", control_command},     {"gradient", gradient_command},   {"fit", fit_command},
-    {"check", check_command},         {"init", init_command},           {"sweep", sweep_command},
-    {"resonance", resonance_command}, {"emit-c", emit_c_command},       {"mesh", mesh_command},
-    {"modes", modes_command},         {"stability", stability_command}, {"solve", solve_command},
-    {"spectrum", spectrum_command},   {"plot", plot_command},           {"view", view_command},
-    {"regge", regge_command},         {"curvature", curvature_command}, {NULL, NULL},
+    {"list", list_command, alone, NULL},
+    {"explain", explain_command, NULL, NULL},
+    {"run", run_command, NULL, NULL},
+    {"order", order_command, by_methods, NULL},
+    {"bench", bench_command, NULL, NULL},
+    {"path", path_command, alone, NULL},
+    {"control", control_command, alone, NULL},
+    {"gradient", gradient_command, alone, NULL},
+    {"fit", fit_command, alone, NULL},
+    {"check", check_command, alone, NULL},
+    {"init", init_command, alone, NULL},
+    {"sweep", sweep_command, by_parts, "--part"},
+    {"resonance", resonance_command, by_threads, NULL},
+    {"emit-c", emit_c_command, alone, NULL},
+    {"mesh", mesh_command, of_meshes, NULL},
+    {"modes", modes_command, NULL, NULL},
+    {"stability", stability_command, alone, NULL},
+    {"solve", solve_command, alone, NULL},
+    {"spectrum", spectrum_command, alone, NULL},
+    {"plot", plot_command, alone, NULL},
+    {"view", view_command, alone, NULL},
+    {"regge", regge_command, alone, NULL},
+    {"curvature", curvature_command, alone, NULL},
+    {NULL, NULL, NULL, NULL},
 };
 
 static const char help[] =
@@ -69,6 +97,9 @@ static const char help[] =
     ".yml: a Lagrangian as\n"
     "  it stands on paper, a start, a method (docs/scenes.md).\n"
     "\n"
+    "  mpirun -np N dvi run SCENE.yaml   N processes share the mesh of a field; dvi explain, modes "
+    "and bench do so, too\n"
+    "\n"
     "  dvi COMMAND --help      options, columns and examples of a command\n"
     "  dvi --version           versions of dvi and of SUNDIALS\n"
     "\n"
@@ -98,6 +129,24 @@ static void print_version(void)
   (void)printf("dvi %s (SUNDIALS %s)\n", dvi_version(), dvi_reference_version());
 }
 
+static bool has_part(const subcommand *s, int argc, char **argv)
+{
+  for (int i = 0; s->part != NULL && i < argc; i++)
+    if (strncmp(argv[i], s->part, strlen(s->part)) == 0) return true;
+  return false;
+}
+
+/* Processes that share nothing would compute, and write, the same. */
+static int start(const subcommand *s, int argc, char **argv)
+{
+  int rank;
+  const int count = started_processes(&rank);
+  if (count < 2 || s->alone == NULL || has_part(s, argc, argv)) return s->run(argc, argv);
+  if (rank > 0) return DONE;
+  return usage_error("%s: %d processes were started, and all would do the same; %s", s->name, count,
+                     s->alone);
+}
+
 static int dispatch(int argc, char **argv)
 {
   if (argc < 2) {
@@ -119,7 +168,7 @@ static int dispatch(int argc, char **argv)
     return DONE;
   }
   for (const subcommand *s = subcommands; s->name != NULL; s++)
-    if (strcmp(argv[1], s->name) == 0) return s->run(argc - 2, argv + 2);
+    if (strcmp(argv[1], s->name) == 0) return start(s, argc - 2, argv + 2);
   char near[128];
   return usage_error("unknown command '%s'%s; see dvi --help", argv[1],
                      suggestion(argv[1], subcommand_at, subcommands, near, sizeof near));

@@ -229,6 +229,7 @@ case $1 in
   demo) demo ;;
   test)
     install_packages "$test_packages"
+    install_slepc
     build release "$(petsc_option)"
     run_tests release -LE "lint|long"
     ;;

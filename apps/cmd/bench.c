@@ -276,9 +276,13 @@ static int check_ranks(const bench_request *r)
     if (!isnan(number[i]) && !(isfinite(number[i]) && number[i] > 0))
       return usage_error("bench: --%s wants a number above 0", i == 0 ? "latency" : "bandwidth");
   if (r->one_point) return usage_error("bench: --scale ranks=: --one-point has no meaning there");
+  if (r->methods.count > 1)
+    return usage_error("bench: --scale ranks= takes one method, not %d", r->methods.count);
   for (int i = 0; i < r->methods.count; i++)
-    if (strcmp(r->methods.word[i], "leapfrog") != 0)
-      return usage_error("bench: --scale ranks=: ranks share leapfrog alone, not %s",
+    if (strcmp(r->methods.word[i], "leapfrog") != 0 && strcmp(r->methods.word[i], "yee") != 0 &&
+        strcmp(r->methods.word[i], "verlet") != 0)
+      return usage_error("bench: --scale ranks=: steps of leapfrog, yee and verlet are timed, not "
+                         "those of %s",
                          r->methods.word[i]);
   return scene_is_path(r->name) ? DONE
                                 : usage_error("bench: --scale ranks=: ranks share the mesh of a "
@@ -289,17 +293,19 @@ static int check_ranks(const bench_request *r)
 static int scale_ranks(const bench_request *r, int argc, char **argv)
 {
   enum { STEPS_DEFAULT = 32 };
-  const ranks_request request = {.timed = {.scene = r->name,
-                                           .settings = &r->settings,
-                                           .h = r->h,
-                                           .rounds = r->rounds,
-                                           .steps = r->steps > 0 ? r->steps : STEPS_DEFAULT},
-                                 .scaled = r->scale,
-                                 .weak = r->weak,
-                                 .latency = r->latency,
-                                 .bandwidth = r->bandwidth,
-                                 .csv = r->outputs.csv,
-                                 .plot = r->outputs.plot};
+  const ranks_request request = {
+      .timed = {.scene = r->name,
+                .settings = &r->settings,
+                .method = r->methods.count > 0 ? r->methods.word[0] : NULL,
+                .h = r->h,
+                .rounds = r->rounds,
+                .steps = r->steps > 0 ? r->steps : STEPS_DEFAULT},
+      .scaled = r->scale,
+      .weak = r->weak,
+      .latency = r->latency,
+      .bandwidth = r->bandwidth,
+      .csv = r->outputs.csv,
+      .plot = r->outputs.plot};
   return ranks_count() > 1 ? ranks_bench_run(&request) : ranks_bench_start(&request, argc, argv);
 }
 

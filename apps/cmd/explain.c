@@ -13,8 +13,9 @@
 #include "load/open_march.h"
 #include "cli/options.h"
 #include "load/scene.h"
-#include "load/share.h"
 #include "module/ranks.h"
+#include "shares/share.h"
+#include "shares/stand_in.h"
 
 enum { NAMES_SHOWN = 12, RANKS_MOST = 10000 };
 
@@ -124,25 +125,37 @@ static void explain_fast_motion(const problem *scene, const char *method, double
 }
 
 /* Say which steps a march of a field takes. */
-static int tell_steps(const problem *scene, const char *method, double h)
+static void tell_steps_of(const dvi_march *march, const char *method)
 {
-  const dvi_march_options options = {
-      .size = sizeof options, .method = method, .step = isnan(h) ? 0 : h};
   dvi_march_facts facts;
-  dvi_march *march = NULL;
-  const int code = open_march(scene, &options, &march);
-  if (code != DONE) return code;
   dvi_march_facts_of(march, &facts);
   (void)printf("march: %s with ", method);
   if (facts.longest > facts.step)
     (void)printf("steps from %g to %g, each below its own bound\n", facts.step, facts.longest);
+  else if (isinf(facts.bound))
+    (void)printf("steps of %g, which have no bound\n", facts.step);
   else if (facts.step <= facts.bound)
     (void)printf("steps of %g, below the bound %g\n", facts.step, facts.bound);
   else
     (void)printf("steps of %g, beyond the bound %.3g of the start's density: noise may grow\n",
                  facts.step, facts.bound);
+}
+
+static int open_steps(const problem *scene, const char *method, double h, dvi_march **march)
+{
+  const dvi_march_options options = {
+      .size = sizeof options, .method = method, .step = isnan(h) ? 0 : h};
+  const int code = open_march(scene, &options, march);
+  if (code == DONE) tell_steps_of(*march, method);
+  return code;
+}
+
+static int tell_steps(const problem *scene, const char *method, double h)
+{
+  dvi_march *march = NULL;
+  const int code = open_steps(scene, method, h, &march);
   dvi_march_destroy(&march);
-  return DONE;
+  return code;
 }
 
 static int explain_march(const problem *scene, const char *method, double h)
@@ -198,31 +211,51 @@ typedef struct explain_request {
 
 static int check_shares(const explain_request *r, const problem *scene)
 {
-  const char *method = r->method != NULL ? r->method : scene->method;
   if (r->how.transform != NULL || r->how.control != NULL)
-    return usage_error("explain: leapfrog is a march of a field, whose steps follow no monitor");
-  if (r->ranks == 0) return share_check("explain", scene, r->method, false);
-  if (scene->scene != NULL && dvi_scene_marches(scene->scene, "leapfrog") && method != NULL &&
-      strcmp(method, "leapfrog") == 0)
-    return DONE;
-  return usage_error(
-      "explain: --ranks is for leapfrog on the mesh of a wave or of Maxwell's field");
+    return usage_error("explain: processes share marches of fields, whose steps follow no monitor");
+  return share_check("explain", scene, r->method, r->ranks > 0 ? (int)r->ranks : ranks_count());
+}
+
+/* One process has no implicit march, but a system. */
+static int open_shares(const explain_request *r, const problem *scene, const char *method,
+                       dvi_march **march)
+{
+  if (r->ranks == 0 || !share_is_implicit(method)) return open_steps(scene, method, r->h, march);
+  (void)printf("march: %s, whose steps have no bound\n", method);
+  return DONE;
+}
+
+/* Processes that are foreseen have what shares have, and no more. */
+static int open_for_shares(const explain_request *r, const char *name, problem **scene)
+{
+  const dvi_scene_division division = {
+      .size = sizeof division, .divide = stand_in_keep, .read = ranks_read, .grid = ranks_grid()};
+  if (r->ranks == 0 || !scene_is_path(name)) return open_any(name, &r->settings, scene);
+  return scene_open_share(name, &r->settings, &division, scene);
 }
 
 /* Say how several processes share the mesh of a field, or would share it. */
 static int explain_shares(const explain_request *r, const char *name)
 {
   problem *scene;
-  int code = open_any(name, &r->settings, &scene);
+  dvi_march *march = NULL;
+  int code = open_for_shares(r, name, &scene);
   if (code != DONE) return code;
+  const char *method = r->method != NULL ? r->method : scene->method;
+  const share_request request = {.path = name,
+                                 .settings = &r->settings,
+                                 .method = method,
+                                 .h = r->h,
+                                 .csv = ranks_is_first() ? r->csv : NULL};
   code = check_shares(r, scene);
   if (code == DONE) {
     explain_parameters(scene, &r->settings);
-    code = tell_steps(scene, "leapfrog", r->h);
+    code = open_shares(r, scene, method, &march);
   }
   if (code == DONE)
-    code = r->ranks > 0 ? share_foresee(scene, (int)r->ranks, r->csv)
-                        : share_tell(scene, ranks_is_first() ? r->csv : NULL);
+    code = r->ranks > 0 ? share_foresee(&request, scene, march, (int)r->ranks)
+                        : share_tell(&request, scene, march);
+  dvi_march_destroy(&march);
   problem_destroy(&scene);
   return code;
 }
@@ -239,14 +272,15 @@ static const char *const details[] = {
     "(and the least one, if there are several), and how fast slow forces carry energy from one "
     "mode to another of the same\n"
     "frequency. An angle over the step is the frequency that the method gives to the mode.\n",
-    "Processes that mpirun or srun started share the mesh of a wave or of Maxwell's field, for "
-    "leapfrog. Said is which cells each\n"
-    "of them owns, and what a step makes it receive: mpirun -np 4 dvi explain drum.yaml --method "
-    "leapfrog. Without mpirun, --ranks 4\n"
-    "foresees it: one process cuts the mesh for all, a little differently. Columns of --csv:\n"
-    "rank,partitioner,cells,ghosts,neighbours,messages,bytes; cells are those of the highest "
-    "degree, and ghosts those of other\n"
-    "processes beside them.\n",
+    "Processes that mpirun or srun started share the mesh of a wave, of Maxwell's field or of a "
+    "solid, or a grid for yee. Said is which\n"
+    "cells each of them owns, what an exchange makes it receive, and what was counted in the first "
+    "steps: mpirun -np 4 dvi explain\n"
+    "drum.yaml --method leapfrog. Without mpirun, --ranks 4 foresees it: one process cuts the mesh "
+    "for all, a little differently.\n"
+    "Columns of --csv: rank,partitioner,cells,ghosts,neighbours,messages,bytes; cells are those of "
+    "the highest degree, and ghosts\n"
+    "those of other processes beside them. Of a grid both are values of E and B.\n",
     NULL,
 };
 
@@ -275,7 +309,7 @@ static const option command_options[] = {
     {.name = "ranks",
      OPTION_AT(explain_request, ranks),
      .value = "N",
-     .help = "of a field by leapfrog: foresee how N processes would share its mesh"},
+     .help = "of a march of a field: foresee how N processes would share its mesh or grid"},
     {.name = "csv",
      OPTION_AT(explain_request, csv),
      .value = "-|FILE",

@@ -13,7 +13,7 @@
 #include "load/density.h"
 #include "load/open.h"
 #include "cli/options.h"
-#include "load/share.h"
+#include "shares/share.h"
 #include "module/ranks.h"
 #include "cli/outputs.h"
 #include "watch/field_run.h"
@@ -268,7 +268,7 @@ static int run_problem(run_request *request, const char *name)
   signals_end(true, ended_before);
   int code = open_any(name, &request->settings, &scene);
   if (code != DONE) return code;
-  code = ranks_count() > 1 ? share_check("run", scene, request->method, true) : DONE;
+  code = ranks_count() > 1 ? share_check("run", scene, request->method, ranks_count()) : DONE;
   if (code != DONE) {
     problem_destroy(&scene);
     return code;
@@ -345,6 +345,9 @@ static const char *const details[] = {
     "the energy would change if coordinates and momenta went back to the start, one at a time. Of "
     "methods that step over fast\n"
     "potentials 10 % are told. The exit code is 0 all the same.\n",
+    "mpirun -np N dvi run SCENE.yaml: N processes share the mesh of a wave, of Maxwell's field or "
+    "of a solid, or a grid of yee.\n"
+    "The rows are those of one process (docs/fields/processes.md).\n",
     "--verify runs the whole job with h, h/2 and h/4, and, for up to 500 coordinates, by IDA, "
     "where that takes no longer than\n"
     "these runs, or 2 s, and prints for each column its value at the end with h, an estimate of "

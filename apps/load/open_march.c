@@ -64,20 +64,16 @@ static const subject of_mesh[] = {{"eps =", "materials"},
                                   {" is for ", "method"},
                                   {"simplices of", "method"},
                                   {"the star", "star"},
+                                  {"not diagonal", "star"},
+                                  {"has a potential", "method"},
                                   {NULL, NULL}};
 
 /* Subjects of sentences on marches of solids. */
-static const subject of_solid[] = {{"steps of", "step"},
-                                   {"obstacle", "obstacles"},
-                                   {"the step", "step"},
-                                   {"a step", "step"},
-                                   {"common step", "step"},
-                                   {"fraction", "step"},
-                                   {" option", "method"},
-                                   {"no method", "method"},
-                                   {"inverted", "initial"},
-                                   {"displacement", "boundary"},
-                                   {NULL, NULL}};
+static const subject of_solid[] = {
+    {"steps of", "step"},  {"obstacle", "obstacles"},    {"the step", "step"},
+    {"a step", "step"},    {"common step", "step"},      {"fraction", "step"},
+    {" option", "method"}, {"no method", "method"},      {"inverted", "initial"},
+    {"beta", "materials"}, {"displacement", "boundary"}, {NULL, NULL}};
 
 /* Return the section of the scene that a sentence of the library is about, or NULL. A step and a
  * method that the options have are not the scene's. */
@@ -117,8 +113,11 @@ static int refuse(dvi_status status, const problem *scene, const dvi_march_optio
     sentence = reason;
   } else if (scene->terms->damping > 0) {
     section = "damping";
-    sentence = "marches of fields have no damping; a conductor has 'sigma', and mechanical methods "
-               "such as verlet take the friction";
+    sentence = ranks_count() > 1
+                   ? "processes share no damping of waves: a conductor has 'sigma', and verlet "
+                     "takes the friction in one process"
+                   : "marches of fields have no damping; a conductor has 'sigma', and mechanical "
+                     "methods such as verlet take the friction";
   } else if (status == DVI_UNSUPPORTED && ranks_count() > 1 && strcmp(method, "yee") == 0 &&
              strncmp(sentence, "yee", 3) != 0) {
     sentence = "several processes share yee on grids alone, without probes of parts and a start by "

@@ -9,6 +9,8 @@
 #include "cli/command.h"
 #include "cli/numbers.h"
 #include "cli/spelling.h"
+#include "module/ranks.h"
+#include "module/store.h"
 
 enum { HINT_SIZE = 96 };
 
@@ -84,6 +86,7 @@ int open_mesh(const char *command, const mesh_sizes *r, const char *name, dvi_me
     return usage_error("%s: '%s' is neither a file nor a generator%s", command, name,
                        suggestion(name, generator_at, NULL, hint, sizeof hint));
   }
+  if (store_is_wanted(name)) return ranks_read_mesh(name, mesh);
   const dvi_status status = dvi_mesh_read(name, NULL, mesh);
   return status == DVI_OK ? DONE : library_error(status);
 }

@@ -10,6 +10,7 @@
 
 #include "cli/command.h"
 #include "cli/signals.h"
+#include "cli/started.h"
 #include "module/loss.h"
 
 static const char module_name[] = "dvi_petsc.so", symbol_name[] = "dvi_petsc";
@@ -25,29 +26,6 @@ static FILE *kept;      /* what a process prints that is not the first one */
 static int spoken = -1; /* its standard error */
 
 /* ---- the start ---- */
-
-static int number_of(const char *name)
-{
-  const char *text = getenv(name);
-  return text != NULL ? (int)strtol(text, NULL, 10) : -1;
-}
-
-/* Find by the environment how many processes were started, and which one this is: by Open MPI, by
- * MPICH and others, by Slurm with PMIx or PMI2. */
-static int expected_count(int *rank)
-{
-  static const char *const starter[][3] = {
-      {"OMPI_COMM_WORLD_SIZE", "OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_RANK"},
-      {"PMI_SIZE", "PMI_RANK", "PMI_RANK"},
-      {"SLURM_NTASKS", "SLURM_PROCID", "PMIX_RANK"}};
-  for (size_t i = 0; i < sizeof starter / sizeof *starter; i++) {
-    const int count = number_of(starter[i][0]);
-    if (count < 2 || getenv(starter[i][2]) == NULL) continue;
-    *rank = number_of(starter[i][1]);
-    return count;
-  }
-  return 1;
-}
 
 /* The first process says why, and the others end in silence. */
 static int refuse(int rank, int count, const char *reason, const char *remedy)
@@ -92,7 +70,7 @@ static const petsc_module *load(void)
 int ranks_begin(void)
 {
   int rank = 0;
-  const int count = expected_count(&rank);
+  const int count = started_processes(&rank);
   if (count < 2) return DONE;
   if (rank == 0) signals_end(true, ended_first);
   const petsc_module *found = load();
@@ -212,6 +190,16 @@ dvi_status ranks_read(const char *path, dvi_mesh **share, void *user)
   return module->read(path, share);
 }
 
+int ranks_read_mesh(const char *path, dvi_mesh **mesh)
+{
+  const int code = ranks_begin_alone();
+  if (code != DONE) return code;
+  const dvi_status status = module->read_whole(path, mesh);
+  module->end();
+  module = NULL;
+  return status == DVI_OK ? DONE : library_error(status);
+}
+
 /* Load what writes files in parts. */
 static int load_writer(const char *path, const char *what)
 {
@@ -261,6 +249,11 @@ const dvi_yee_ranks *ranks_grid(void)
 void ranks_tell(int rank, int degree, mesh_division *division)
 {
   module->tell(rank, degree, division);
+}
+
+void ranks_received(mesh_traffic *traffic)
+{
+  module->count(traffic);
 }
 
 dvi_status ranks_modes(const dvi_field *field, const dvi_modes_options *options, double *eigenvalue,

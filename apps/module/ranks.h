@@ -44,6 +44,10 @@ dvi_status ranks_divide(const dvi_mesh *mesh, dvi_mesh **share, void *user);
 /** Read a share from a file of HDF5 in parts, as its other callback. */
 dvi_status ranks_read(const char *path, dvi_mesh **share, void *user);
 
+/** Read the whole mesh of such a file in a process that is alone. Returns DONE, or complains and
+ * returns the exit code. */
+int ranks_read_mesh(const char *path, dvi_mesh **mesh);
+
 /** Write a mesh to such a file. Returns DONE, or complains and returns the exit code. */
 int ranks_write_mesh(const dvi_mesh *mesh, const char *path);
 
@@ -64,6 +68,9 @@ const dvi_yee_ranks *ranks_grid(void);
 
 /** Give the share of process `rank`, of forms of a degree. Called by all processes. */
 void ranks_tell(int rank, int degree, mesh_division *division);
+
+/** Give what this process has received so far. */
+void ranks_received(mesh_traffic *traffic);
 
 /** Find modes of the field on this process's share, as dvi_field_modes does. Called by all. */
 dvi_status ranks_modes(const dvi_field *field, const dvi_modes_options *options, double *eigenvalue,

@@ -15,6 +15,8 @@ enum { PATIENCE = 2000, PAUSE = 5 }; /* milliseconds */
 
 static dvi_division *division;
 static dvi_yee_ranks *planes;
+static dvi_yee_ranks counted;  /* the same, which count what is received */
+static mesh_traffic of_planes; /* as counted */
 /* What all processes do together. It stays pending if this one gives up and ends the others. */
 static MPI_Request pending = MPI_REQUEST_NULL;
 static MPI_Win common = MPI_WIN_NULL;     /* memory of one machine */
@@ -85,10 +87,37 @@ static dvi_status load(dvi_march *march, const char *path)
   return dvi_march_read_divided(march, division, path);
 }
 
+/* ---- planes of grids ---- */
+
+static int pass(int to, int from, int64_t count, const double *sent, double *received, void *user)
+{
+  if (from >= 0) {
+    of_planes.messages++;
+    of_planes.bytes += count * (int64_t)sizeof *received;
+  }
+  return planes->pass(to, from, count, sent, received, user);
+}
+
+static int sum(int count, int64_t *number, void *user)
+{
+  of_planes.agreements++;
+  return planes->sum(count, number, user);
+}
+
+static int largest_of(int count, double *number, void *user)
+{
+  of_planes.agreements++;
+  return planes->largest(count, number, user);
+}
+
 static const dvi_yee_ranks *grid(void)
 {
-  if (planes == NULL) (void)dvi_yee_ranks_create(MPI_COMM_WORLD, &planes);
-  return planes;
+  if (planes == NULL && dvi_yee_ranks_create(workers, &planes) != DVI_OK) return NULL;
+  counted = *planes;
+  counted.pass = pass;
+  counted.sum = sum;
+  counted.largest = largest_of;
+  return &counted;
 }
 
 static void tell(int rank, int degree, mesh_division *told)
@@ -108,6 +137,23 @@ static void tell(int rank, int degree, mesh_division *told)
                           .messages_in = (int)number[3],
                           .neighbours = (int)number[4],
                           .agreements = number[5]};
+}
+
+static void count(mesh_traffic *traffic)
+{
+  dvi_division_facts facts = {.partitioner = ""};
+  dvi_division_facts_of(division, &facts);
+  *traffic = (mesh_traffic){.messages = facts.traffic.messages + of_planes.messages,
+                            .bytes = facts.traffic.bytes + of_planes.bytes,
+                            .agreements = facts.agreements + of_planes.agreements,
+                            .sums = facts.traffic.sums,
+                            .gathers = facts.traffic.gathers,
+                            .corrections = facts.corrections,
+                            .iterations = facts.iterations,
+                            .iteration_messages = facts.iteration.messages,
+                            .iteration_bytes = facts.iteration.bytes,
+                            .iteration_sums = facts.iteration.sums,
+                            .iteration_gathers = facts.iteration.gathers};
 }
 
 static dvi_status find_modes(const dvi_field *field, const dvi_modes_options *options,
@@ -155,6 +201,7 @@ static bool meet(const rank_end *own, rank_end *all)
 static void dismiss(void)
 {
   dvi_division_destroy(&division);
+  dvi_yee_ranks_destroy(&planes);
   if (workers != MPI_COMM_WORLD && workers != MPI_COMM_NULL) (void)MPI_Comm_free(&workers);
   workers = MPI_COMM_WORLD;
 }
@@ -243,7 +290,6 @@ static dvi_status partition(const dvi_mesh *mesh, int parts, int *owner)
 static void end(void)
 {
   dismiss();
-  dvi_yee_ranks_destroy(&planes);
   if (common != MPI_WIN_NULL) (void)MPI_Win_free(&common);
   (void)PetscPopErrorHandler();
   (void)PetscFinalize();
@@ -260,11 +306,13 @@ const petsc_module dvi_petsc = {
     .wait_for_all = wait_for_all,
     .divide = divide,
     .read = read_share,
+    .read_whole = dvi_mesh_read_whole,
     .write = dvi_mesh_write_divided,
     .save = save,
     .load = load,
     .grid = grid,
     .tell = tell,
+    .count = count,
     .modes = find_modes,
     .largest = largest,
     .meet = meet,

@@ -20,6 +20,16 @@ typedef struct mesh_division {
   int64_t agreements;    /**< of all processes so far */
 } mesh_division;
 
+/** What a process has received so far. */
+typedef struct mesh_traffic {
+  int64_t messages, bytes;         /**< from one process each */
+  int64_t agreements;              /**< in which all processes have added or compared numbers */
+  int64_t sums, gathers;           /**< of implicit equations, over all processes */
+  int64_t corrections, iterations; /**< of these */
+  /** in the last one of the iterations alone */
+  int64_t iteration_messages, iteration_bytes, iteration_sums, iteration_gathers;
+} mesh_traffic;
+
 /** What the modes of a divided field took. */
 typedef struct mode_search {
   int64_t unknowns, zeros; /**< of the whole field, and its modes of frequency zero */
@@ -54,6 +64,9 @@ typedef struct petsc_module {
   /** Read a share of the mesh in a file of HDF5 likewise, in parts. */
   dvi_status (*read)(const char *path, dvi_mesh **share);
 
+  /** Read the whole mesh of such a file. */
+  dvi_status (*read_whole)(const char *path, dvi_mesh **mesh);
+
   /** Write a whole mesh to such a file. The module need not be started. */
   dvi_status (*write)(const dvi_mesh *mesh, const char *path);
 
@@ -69,6 +82,9 @@ typedef struct petsc_module {
   /** Give the division of process `rank`, with the bytes that a form of a degree receives. Called
    *  by all processes. */
   void (*tell)(int rank, int degree, mesh_division *division);
+
+  /** Give what this process has received so far. */
+  void (*count)(mesh_traffic *traffic);
 
   /** Find the modes of a field on the share, as dvi_field_modes does. */
   dvi_status (*modes)(const dvi_field *field, const dvi_modes_options *options, double *eigenvalue,

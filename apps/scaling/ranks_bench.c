@@ -15,6 +15,8 @@
 #include "scaling/cores.h"
 #include "scaling/ranks_report.h"
 #include "scaling/triad.h"
+#include "scaling/whole.h"
+#include "shares/stand_in.h"
 #include "study/clock.h"
 
 enum {
@@ -67,64 +69,79 @@ int ranks_bench_start(const ranks_request *request, int argc, char **argv)
 
 /* ---- one process alone ---- */
 
-/* Count what a step without losses moves if each number comes from memory once: of the (k+1)-cells
- * the numbers of their facets in both directions, weights and H, and E of the k-cells. */
-static int count_work(const timed_march *timed, whole_run *whole)
-{
-  const dvi_field *field = dvi_scene_field(timed->scene->scene);
-  const dvi_mesh *mesh = field_mesh(field);
-  const int k = dvi_field_degree(field), n = dvi_mesh_dimension(mesh);
-  dvi_matrix d;
-  const dvi_status status = dvi_mesh_incidence(mesh, k, &d);
-  if (status != DVI_OK) return library_error(status);
-  const double faces = (double)d.rows, edges = (double)d.columns, width = d.width;
-  *whole = (whole_run){.dimension = n,
-                       .degree = k,
-                       .cells = (double)dvi_mesh_count(mesh, n),
-                       .bytes = faces * (8 * width + 32) + 36 * edges,
-                       .flops = faces * (3 * width + 2) + 2 * edges,
-                       .state_bytes = 8 * (faces + edges)};
-  for (int i = 0; i <= n; i++)
-    whole->numbered = fmax(whole->numbered, (double)dvi_mesh_count(mesh, i));
-  return DONE;
-}
-
 static int measure_cuts(ranks_bench *b, const timed_march *timed)
 {
   int code = cut_run_measure(&b->request->timed, timed, 1, b->cut);
   b->cuts = 1;
   for (int parts = 2; parts <= PARTS_MAX && parts * CELLS_LEAST <= b->whole.cells && code == DONE;
-       parts *= FINER)
-    code = cut_run_measure(&b->request->timed, timed, parts, b->cut + b->cuts++);
+       parts *= FINER) {
+    code = cut_run_measure(&b->request->timed, timed, parts, b->cut + b->cuts);
+    if (b->cut[b->cuts].cut.parts < parts) break;
+    b->cuts++;
+  }
   return code;
 }
 
+/* One process alone reads all of a file in parts, too. */
 static int measure_alone(ranks_bench *b)
 {
+  const dvi_scene_division parts = {
+      .size = sizeof parts, .divide = stand_in_keep, .read = ranks_read};
   timed_march timed;
-  int code = timed_open(&b->request->timed, NULL, &timed);
-  if (code == DONE) code = count_work(&timed, &b->whole);
+  int code = timed_open(&b->request->timed, b->is_in_parts ? &parts : NULL, &timed);
+  if (code == DONE) code = whole_count(&timed, &b->whole);
   if (code == DONE) code = timed_steps(&b->request->timed, &timed, 1, &b->whole.seconds);
   if (code == DONE) code = measure_cuts(b, &timed);
   timed_close(&timed);
+  if (code == DONE && b->whole.kind == TIMED_GRID) code = whole_foresee(b);
   return code;
 }
 
 /* ---- processes that share ---- */
 
-static int measure_refresh(const timed_march *timed, shared_run *run, long rounds)
+/* Exchange the planes of two neighbours, or of one, with the processes beside this one, whose order
+ * does not count. */
+static dvi_status pass_planes(const block *own, int workers, double *values)
 {
-  const dvi_field *field = dvi_scene_field(timed->scene->scene);
-  const int k = dvi_field_degree(field);
+  const dvi_yee_ranks *grid = ranks_grid();
+  const int64_t count = own->ghosts / (own->messages > 0 ? own->messages : 1);
+  if (grid == NULL) return DVI_SOLVER_FAILED;
+  for (int way = 1; way >= -1; way -= 2) {
+    const int to = grid->rank + way, from = grid->rank - way;
+    if (grid->pass(to < workers ? to : -1, from < workers ? from : -1, count, values,
+                   values + count, grid->user) != 0)
+      return DVI_SOLVER_FAILED;
+  }
+  return DVI_OK;
+}
+
+/* Refresh all that a step needs of others, or for a grid that some steps need together. */
+static dvi_status exchange_once(const timed_march *timed, const block *own, int workers,
+                                double *values)
+{
+  dvi_status status = DVI_OK;
+  if (timed->kind == TIMED_GRID) return pass_planes(own, workers, values);
+  for (int i = 0; i < timed_times(timed) && status == DVI_OK; i++)
+    status = ranks_refresh(timed_degree(timed), values);
+  return status;
+}
+
+static int measure_refresh(const timed_march *timed, const block *own, shared_run *run, long rounds)
+{
+  const bool is_grid = timed->kind == TIMED_GRID;
+  const int64_t room = is_grid ? 2 * own->ghosts
+                               : dvi_mesh_count(timed_mesh(timed), timed_degree(timed));
+  const double refreshes = REFRESHES * (is_grid ? own->together : 1); /* steps that they serve */
   double sample[DVI_STUDY_ROUNDS_MAX], ready;
-  double *values = calloc((size_t)dvi_mesh_count(field_mesh(field), k), sizeof *values);
+  double *values = calloc((size_t)room + 1, sizeof *values);
   dvi_status status = values != NULL ? DVI_OK : DVI_NO_MEMORY;
   bool good = true;
   for (long round = 0; round < rounds && status == DVI_OK && good; round++) {
     good = slowest_of(run->ranks, 0, &ready);
     const double began = elapsed_now();
-    for (int i = 0; i < REFRESHES && status == DVI_OK; i++) status = ranks_refresh(k, values);
-    good = slowest_of(run->ranks, (elapsed_now() - began) / REFRESHES, sample + round) && good;
+    for (int i = 0; i < REFRESHES && status == DVI_OK; i++)
+      status = exchange_once(timed, own, run->ranks, values);
+    good = slowest_of(run->ranks, (elapsed_now() - began) / refreshes, sample + round) && good;
   }
   free(values);
   if (status != DVI_OK) return library_error(status);
@@ -135,16 +152,48 @@ static int measure_refresh(const timed_march *timed, shared_run *run, long round
 /* Give what the ranks have most. */
 static void find_cut(const timed_march *timed, shared_run *run)
 {
+  const int times = timed_times(timed);
   run->cut = (mesh_cut){.parts = run->ranks};
   run->cells = 0;
   for (int r = 0; r < run->ranks; r++) {
     mesh_division share;
-    ranks_tell(r, dvi_field_degree(dvi_scene_field(timed->scene->scene)), &share);
+    ranks_tell(r, timed_degree(timed), &share);
     run->cells += (double)share.owned;
     run->cut.share = fmax(run->cut.share, (double)(share.owned + share.ghosts));
-    run->cut.bytes = fmax(run->cut.bytes, (double)share.bytes_in);
-    run->cut.messages = fmax(run->cut.messages, share.messages_in);
+    run->cut.bytes = fmax(run->cut.bytes, times * (double)share.bytes_in);
+    run->cut.messages = fmax(run->cut.messages, times * share.messages_in);
   }
+}
+
+/* Do the same for blocks, of which each rank foresees its own. */
+static int find_blocks(const timed_request *request, block *own, shared_run *run)
+{
+  block *all = calloc((size_t)run->ranks, sizeof *all);
+  block_cutter *cutter = NULL;
+  dvi_march *march = NULL;
+  int code = all != NULL ? block_cutter_open(request->scene, request->settings, &cutter)
+                         : library_error(DVI_NO_MEMORY);
+  if (code == DONE) {
+    dvi_status status = block_march(cutter, ranks_number(), run->ranks, request->h, &march);
+    if (status == DVI_OK) status = block_count(cutter, march, own);
+    if (status != DVI_OK) code = library_error(status);
+  }
+  if (code == DONE && !ranks_gather(own, sizeof *own, all)) code = FAILED;
+  run->cut = (mesh_cut){.parts = run->ranks};
+  run->cells = run->plane = 0;
+  for (int r = 0; r < run->ranks && all != NULL && code == DONE; r++) {
+    const mesh_cut cut = cut_of_block(all + r, run->ranks);
+    run->cells += (double)all[r].values;
+    run->plane = fmax(run->plane,
+                      (double)all[r].ghosts / (all[r].together * fmax(1, all[r].neighbours)));
+    run->cut.share = fmax(run->cut.share, cut.share);
+    run->cut.bytes = fmax(run->cut.bytes, cut.bytes);
+    run->cut.messages = fmax(run->cut.messages, cut.messages);
+  }
+  dvi_march_destroy(&march);
+  block_cutter_close(&cutter);
+  free(all);
+  return code;
 }
 
 /* Find the value of the parameter for one rank, in the settings or the scene. */
@@ -174,38 +223,52 @@ static dvi_status divide(const dvi_mesh *mesh, dvi_mesh **share, void *user)
   return ranks_divide(mesh, share, NULL);
 }
 
-static double agreements_of(const timed_march *timed)
+/* No process has the whole mesh of a file. */
+static dvi_status read_parts(const char *path, dvi_mesh **share, void *user)
 {
-  mesh_division first;
-  ranks_tell(0, dvi_field_degree(dvi_scene_field(timed->scene->scene)), &first);
-  return (double)first.agreements;
+  double *heap = user;
+  *heap = (double)NAN;
+  return ranks_read(path, share, NULL);
+}
+
+static double agreements_so_far(void)
+{
+  mesh_traffic traffic;
+  ranks_received(&traffic);
+  return (double)traffic.agreements;
 }
 
 /* Time steps, and count agreements in them. */
-static int time_shared(const timed_request *request, const timed_march *timed, shared_run *run)
+static int time_shared(const timed_request *request, const timed_march *timed, const block *own,
+                       shared_run *run)
 {
-  dvi_march_facts facts;
-  const double before = agreements_of(timed);
+  const double began = dvi_march_time(timed->march), agreements = agreements_so_far();
   const int code = timed_steps(request, timed, run->ranks, &run->seconds);
   if (code != DONE) return code;
-  dvi_march_facts_of(timed->march, &facts);
-  run->agreements = (agreements_of(timed) - before) / (double)facts.steps;
-  return measure_refresh(timed, run, request->rounds);
+  run->agreements = (agreements_so_far() - agreements) /
+                    round((dvi_march_time(timed->march) - began) / timed->h);
+  return measure_refresh(timed, own, run, request->rounds);
 }
 
 static int measure_shared(ranks_bench *b, const timed_request *request, shared_run *run)
 {
   double heap = machine_heap();
-  const dvi_scene_division division = {.size = sizeof division, .divide = divide, .user = &heap};
+  const dvi_scene_division division = {.size = sizeof division,
+                                       .divide = divide,
+                                       .read = read_parts,
+                                       .user = &heap,
+                                       .grid = ranks_grid()};
   timed_march timed;
+  block own = {.together = 1};
   int code = timed_open(request, &division, &timed);
+  if (code == DONE && timed.kind == TIMED_GRID) code = find_blocks(request, &own, run);
+  if (code == DONE && timed.kind != TIMED_GRID) find_cut(&timed, run);
   if (code == DONE) {
-    find_cut(&timed, run);
     run->is_oversubscribed = ranks_on_machine() > b->cores;
-    if (!run->is_weak) b->mesh_bytes = heap;
+    if (!run->is_weak) b->mesh_bytes = timed.kind == TIMED_GRID ? (double)NAN : heap;
     if (!run->is_weak && b->request->weak != NULL) code = find_base(b, timed.scene);
   }
-  if (code == DONE) code = time_shared(request, &timed, run);
+  if (code == DONE) code = time_shared(request, &timed, &own, run);
   timed_close(&timed);
   return code;
 }
@@ -229,6 +292,10 @@ static int measure_weak(ranks_bench *b, double cells, shared_run *run)
   settings.word[settings.count++] = text;
   grown.settings = &settings;
   const int code = measure_shared(b, &grown, run);
+  if (code == DONE && fabs(run->plane - run[-1].plane) > tolerance * run->plane)
+    return usage_error("bench: --weak %s: the planes of the last axis grow, along which ranks have "
+                       "slabs of a longer grid; take a parameter that makes this axis longer alone",
+                       b->request->weak);
   if (code != DONE || fabs(run->cells / (cells * run->ranks) - 1) < tolerance) return code;
   return usage_error(
       "bench: --weak %s: with %s the mesh has %.0f cells, and not %d times %.0f; the "
@@ -353,7 +420,9 @@ static int measure_all(ranks_bench *b)
 
 int ranks_bench_run(const ranks_request *request)
 {
-  ranks_bench b = {.request = request, .cores = cores_count()};
+  ranks_bench b = {.request = request,
+                   .cores = cores_count(),
+                   .is_in_parts = timed_is_in_parts(&request->timed)};
   int code = ranks_agree(rank_counts_read(request->scaled, &b.asked));
   if (code == DONE) code = measure_all(&b);
   if (code == DONE && ranks_is_first()) code = ranks_report(&b);

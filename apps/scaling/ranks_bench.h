@@ -18,10 +18,12 @@ typedef struct ranks_request {
 
 /** The mesh and a step on it. */
 typedef struct whole_run {
-  int dimension, degree;
-  double cells;        /**< of the highest degree */
-  double numbered;     /**< of the degree that has most cells */
-  double bytes, flops; /**< that a step moves and takes */
+  timed_kind kind;
+  const char *method;
+  int dimension;       /**< of the mesh, 1 for a grid */
+  double cells;        /**< of the highest degree, or values of a grid */
+  double numbered;     /**< of the degree that has most cells. 0 for a grid */
+  double bytes, flops; /**< that a step moves and takes, NaN if not counted */
   double state_bytes;  /**< of a saved state */
   dvi_study_spread seconds;
 } whole_run;
@@ -34,6 +36,7 @@ typedef struct shared_run {
   double cells; /**< of the whole mesh */
   mesh_cut cut;
   dvi_study_spread seconds;
+  double plane;      /**< of a grid: values of a plane that comes from a neighbour */
   double exchange;   /**< seconds of a refresh alone, the least of the rounds */
   double agreements; /**< of all ranks in a step */
 } shared_run;
@@ -55,7 +58,11 @@ typedef struct ranks_bench {
   int cuts; /**< the first one is the whole mesh */
   cut_run cut[CUTS_MAX];
   double mesh_bytes; /**< of the heap that the whole mesh holds, NaN if not known */
-  double base;       /**< the parameter of weak scaling for one rank */
+  bool is_in_parts;  /**< no process holds the whole mesh */
+  /** of a grid: the blocks of as many ranks as are asked for, with 0 parts beyond the most that can
+   *  share it, and a slab with one neighbour, which each rank has on both sides of a longer grid */
+  mesh_cut foreseen[RANK_COUNTS_MAX], beside;
+  double base; /**< the parameter of weak scaling for one rank */
   int shared;
   shared_run run[2 * SHARED_MAX];
   int triads;

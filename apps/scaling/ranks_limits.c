@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "scaling/ranks_model.h"
+#include "scaling/whole.h"
 
 enum { SUM_BYTES = 71 * 8 /* of an exact sum (docs/fields/shares.md) */ };
 
@@ -34,23 +35,37 @@ static double find_waiting(const ranks_bench *b, step_prediction *at)
   return all;
 }
 
+/* Find the first of the numbers that are asked for, of which blocks of a grid are foreseen. */
+static double find_waiting_blocks(const ranks_bench *b, step_prediction *at)
+{
+  double efficiency;
+  for (int i = 0; i < b->asked.count; i++)
+    if (ranks_model_predict(b, b->asked.number[i], false, at, &efficiency) &&
+        at->exchange > at->compute)
+      return b->asked.number[i];
+  return 0;
+}
+
 static void print_strong(FILE *stream, const ranks_bench *b)
 {
-  step_prediction at;
-  const double ranks = find_waiting(b, &at);
+  step_prediction at = {.cells = 0};
+  const double ranks = b->whole.kind == TIMED_GRID ? find_waiting_blocks(b, &at)
+                                                   : find_waiting(b, &at);
   if (ranks <= 0) {
-    (void)fprintf(stream, "  constant mesh: the halo never takes longer than the cells\n");
+    (void)fprintf(stream, "  constant %s: the halo never takes longer than the cells\n",
+                  whole_name(&b->whole));
     return;
   }
   const double latency = at.messages * (b->cost.latency + b->cost.overhead),
                bytes = at.bytes * (1 / b->cost.bandwidth + b->cost.packing);
   (void)fprintf(
       stream,
-      "  constant mesh: from %.0f ranks on, with %.0f cells each, a step waits longer than it "
+      "  constant %s: from %.0f ranks on, with %.0f %s each, a step waits longer than it "
       "computes:\n    %s of the halo is the larger part, %.1f of %.1f us. What would be done: %s\n",
-      ranks, at.cells, latency > bytes ? "latency" : "bandwidth", 1e6 * fmax(latency, bytes),
-      1e6 * at.exchange,
-      "inner cells while messages\n    are under way, and two steps for one halo of twice the "
+      whole_name(&b->whole), ranks, at.cells, whole_unit(&b->whole),
+      latency > bytes ? "latency" : "bandwidth", 1e6 * fmax(latency, bytes), 1e6 * at.exchange,
+      "inner cells while messages\n    are under way, and two steps for one halo of twice "
+      "the "
       "width");
 }
 
@@ -80,20 +95,25 @@ static double sum_seconds(const ranks_bench *b, double ranks)
 static void print_weak(FILE *stream, const ranks_bench *b)
 {
   const double start = b->cores * b->mesh_bytes;
-  limit list[] = {{machine_memory() / start,
-                   "the whole mesh in the memory of each rank at the start",
-                   "a mesh that is read and divided in parts"},
-                  {INT_MAX / b->whole.numbered,
-                   "the numbers of the whole mesh's cells, which are ints", "numbers of 64 bits"},
-                  {machine_memory() / b->whole.state_bytes,
-                   "a saved state, which the first rank holds and writes alone",
-                   "files that all ranks write (parallel HDF5)"}};
+  limit list[] = {
+      {machine_memory() / start, "the whole mesh in the memory of each rank at the start",
+       "a file that ranks read in parts (dvi mesh FILE --write mesh.h5, and mesh: {file: "
+       "mesh.h5})"},
+      {INT_MAX / b->whole.numbered, "the numbers of the whole mesh's cells, which are ints",
+       "numbers of 64 bits"},
+      {machine_memory() / b->whole.state_bytes,
+       "a saved state, which the first rank holds and writes alone",
+       "files that all ranks write (parallel HDF5)"}};
   enum { LIMITS = sizeof list / sizeof *list };
   sort(LIMITS, list);
+  if (b->is_in_parts)
+    (void)fprintf(stream,
+                  "  start: ranks read the mesh in parts, and none holds the whole of it\n");
   (void)fprintf(stream,
-                "  mesh that grows with the ranks, %.0f cells each, %d ranks on a machine of "
+                "  %s that grows with the ranks, %.0f %s each, %d ranks on a machine of "
                 "%.3g GB:\n",
-                b->whole.cells, b->cores, 1e-9 * machine_memory());
+                whole_name(&b->whole), b->whole.cells, whole_unit(&b->whole), b->cores,
+                1e-9 * machine_memory());
   for (int i = 0; i < LIMITS; i++)
     if (isfinite(list[i].ranks))
       (void)fprintf(stream, "    beyond %.0f ranks: %s;\n      %s\n", fmax(1, floor(list[i].ranks)),

@@ -12,4 +12,7 @@ bool ranks_model_fit(ranks_bench *b);
  * than ranks. */
 bool ranks_model_predict(const ranks_bench *b, double ranks, bool is_weak, step_prediction *p,
                          double *efficiency);
+
+/** Predict a step of a run that was measured. Its seconds are NaN if there is no prediction. */
+void ranks_model_run(const ranks_bench *b, const shared_run *run, step_prediction *p);
 #endif

@@ -10,6 +10,7 @@
 #include "plot/plot.h"
 #include "scaling/ranks_limits.h"
 #include "scaling/ranks_model.h"
+#include "scaling/whole.h"
 
 static const table_column columns[] = {
     {"scaling", NULL},
@@ -101,18 +102,22 @@ static void print_alone(FILE *stream, const ranks_bench *b)
   for (int i = 0; i < b->cuts; i++) {
     const mesh_cut *c = &b->cut[i].cut;
     const double measured = b->cut[i].seconds.least;
-    (void)fprintf(stream, "  %8.0f %10.0f %10.0f %9.0f %11.3e %11.3e %8.1f%%\n", c->parts, c->share,
+    (void)fprintf(stream, "  %8.0f %10.0f %10.0f %9.3g %11.3e %11.3e %8.1f%%\n", c->parts, c->share,
                   c->bytes, c->messages, measured, measured * (1 + b->deviation[i]),
                   100 * b->deviation[i]);
     most = fmax(most, fabs(b->deviation[i]));
   }
   (void)fprintf(stream,
                 "  fit: %.3g us a step and %.3g ns for 1000 bytes, that is %.1f GB/s; the largest "
-                "deviation is %.1f %%\n"
-                "  scene: its own step takes %.3f times as long as that of a field without losses "
-                "and sources\n",
+                "deviation is %.1f %%\n",
                 1e6 * b->cost.per_step / b->own, 1e12 * b->cost.per_byte / b->own,
-                1e-9 * b->own / b->cost.per_byte, 100 * most, b->own);
+                1e-9 * b->own / b->cost.per_byte, 100 * most);
+  if (b->whole.kind == TIMED_FIELD)
+    (void)fprintf(
+        stream,
+        "  scene: its own step takes %.3f times as long as that of a field without losses "
+        "and sources\n",
+        b->own);
 }
 
 static void print_triads(FILE *stream, const ranks_bench *b)
@@ -141,10 +146,10 @@ static void print_runs(FILE *stream, const ranks_bench *b)
                 "mesh", "cells", "step", "model", "speed-up", "refresh", "messages");
   for (int i = 0; i < b->shared; i++) {
     const shared_run *r = b->run + i;
-    step_prediction p = {.seconds = (double)NAN};
-    (void)step_cost_predict(&b->cost, r->ranks, r->cells, &p);
+    step_prediction p;
+    ranks_model_run(b, r, &p);
     const double gain = b->whole.seconds.median / r->seconds.median;
-    (void)fprintf(stream, "  %6d %6s %10.0f %11.3e %11.3e %10.2f %10.2e %9.0f", r->ranks,
+    (void)fprintf(stream, "  %6d %6s %10.0f %11.3e %11.3e %10.2f %10.2e %9.3g", r->ranks,
                   r->is_weak ? "grows" : "same", r->cells, r->seconds.median, p.seconds,
                   r->is_weak ? gain * r->ranks : gain, r->exchange, r->cut.messages);
     print_turns(stream, b, r, p.seconds);
@@ -153,10 +158,10 @@ static void print_runs(FILE *stream, const ranks_bench *b)
 
 static void print_mesh(FILE *stream, const ranks_bench *b)
 {
-  (void)fprintf(stream,
-                "mesh: %.0f cells; a step moves %.4g bytes and takes %.4g operations, if each "
-                "number comes from memory once\n",
-                b->whole.cells, b->whole.bytes, b->whole.flops);
+  (void)fprintf(stream, "%s: %.0f %s; a step moves %.4g bytes", whole_name(&b->whole),
+                b->whole.cells, whole_unit(&b->whole), b->whole.bytes);
+  if (isfinite(b->whole.flops)) (void)fprintf(stream, " and takes %.4g operations", b->whole.flops);
+  (void)fprintf(stream, ", if each number comes from memory once\n");
   if (isfinite(b->mesh_bytes))
     (void)fprintf(stream, "start: the whole mesh takes %.4g bytes, %.0f a cell, in each process\n",
                   b->mesh_bytes, b->mesh_bytes / b->whole.cells);
@@ -198,7 +203,11 @@ static void print_model(FILE *stream, const ranks_bench *b)
                                                  : "");
   else
     (void)fprintf(stream, "whatever others do: no run had a core for each rank\n");
-  if (b->cuts > 1)
+  if (b->cuts > 1 && b->whole.kind == TIMED_GRID)
+    (void)fprintf(stream, "  surface: blocks are foreseen for each number of ranks; of a longer "
+                          "grid ranks have slabs "
+                          "between two others\n");
+  else if (b->cuts > 1)
     (void)fprintf(stream,
                   "  surface: the shell of ghosts, their bytes and messages are those of cuts into "
                   "up to %.0f parts by the\n    partitioner in one process; ranks beyond have as "
@@ -215,7 +224,7 @@ static void print_model(FILE *stream, const ranks_bench *b)
 
 static void print_all(FILE *stream, const ranks_bench *b, const result_table *rows, int strong)
 {
-  (void)fprintf(stream, "Ranks that share %s, by leapfrog\n", b->request->timed.scene);
+  (void)fprintf(stream, "Ranks that share %s, by %s\n", b->request->timed.scene, b->whole.method);
   machine_print(stream);
   (void)fprintf(stream, "cores: %d\n", b->cores);
   print_mesh(stream, b);
@@ -223,10 +232,13 @@ static void print_all(FILE *stream, const ranks_bench *b, const result_table *ro
   print_alone(stream, b);
   print_runs(stream, b);
   print_model(stream, b);
-  (void)fprintf(stream, "\nStrong scaling: the mesh is divided\n");
+  (void)fprintf(stream, "\nStrong scaling: the %s is divided\n", whole_name(&b->whole));
   table_print(rows, stream, 2, 0, strong);
-  if (strong < b->asked.count) (void)fprintf(stream, "  more ranks than cells are left out\n");
-  (void)fprintf(stream, "\nWeak scaling: each rank has as many cells as the mesh\n");
+  if (strong < b->asked.count)
+    (void)fprintf(stream, "  more ranks than %s are left out\n",
+                  b->whole.kind == TIMED_GRID ? "the grid has blocks for" : "cells");
+  (void)fprintf(stream, "\nWeak scaling: each rank has as many %s as the %s\n",
+                whole_unit(&b->whole), whole_name(&b->whole));
   table_print(rows, stream, 2, strong, table_rows(rows));
   (void)fprintf(
       stream,

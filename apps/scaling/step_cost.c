@@ -121,25 +121,30 @@ static surroundings find_surroundings(const step_cost *cost, double ranks)
   return most;
 }
 
+void step_cost_charge(const step_cost *cost, double ranks, step_prediction *p)
+{
+  const double message = cost->latency + cost->overhead;
+  p->compute = cost->per_step + cost->per_byte * cost->traffic * p->share;
+  if (ranks > 1) p->compute *= cost->sharing;
+  p->exchange = p->messages * message + p->bytes * (1 / cost->bandwidth + cost->packing) +
+                cost->agreements * ceil(log2(ranks)) * message;
+  p->seconds = p->compute + p->exchange;
+}
+
 bool step_cost_predict(const step_cost *cost, double ranks, double cells,
                        step_prediction *prediction)
 {
   if (!step_cost_makes_sense(cost) || !isfinite(ranks) || !isfinite(cells) || ranks < 1 ||
       cells < ranks)
     return false;
-  const double n = cost->dimension, side = pow(cells / ranks, 1 / n),
-               message = cost->latency + cost->overhead;
+  const double n = cost->dimension, side = pow(cells / ranks, 1 / n);
   const surroundings around = find_surroundings(cost, ranks);
   step_prediction p = {.cells = cells / ranks,
                        .share = fmin(cells, pow(side + around.thickness, n)),
                        .messages = around.messages,
                        .bytes = around.surface * pow(side, n - 1)};
   if (ranks <= 1) p.share = cells;
-  p.compute = cost->per_step + cost->per_byte * cost->traffic * p.share;
-  if (ranks > 1) p.compute *= cost->sharing;
-  p.exchange = p.messages * message + p.bytes * (1 / cost->bandwidth + cost->packing) +
-               cost->agreements * ceil(log2(ranks)) * message;
-  p.seconds = p.compute + p.exchange;
+  step_cost_charge(cost, ranks, &p);
   *prediction = p;
   return true;
 }

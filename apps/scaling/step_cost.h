@@ -62,4 +62,7 @@ bool step_cost_makes_sense(const step_cost *cost);
  *  make no sense, or there are more ranks than cells, or a number is not finite or below 1. */
 bool step_cost_predict(const step_cost *cost, double ranks, double cells,
                        step_prediction *prediction);
+
+/** Add what takes time to a prediction that has cells, share, messages and bytes. */
+void step_cost_charge(const step_cost *cost, double ranks, step_prediction *prediction);
 #endif

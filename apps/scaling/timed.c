@@ -2,27 +2,120 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "cli/command.h"
+#include "load/elastic.h"
+#include "load/field.h"
 #include "load/open_march.h"
 #include "load/scene.h"
-#include "load/share.h"
+#include "shares/share.h"
 #include "module/ranks.h"
 #include "study/clock.h"
 
+/* ---- meshes in parts ---- */
+
+static dvi_status see_whole(const dvi_mesh *mesh, dvi_mesh **share, void *user)
+{
+  (void)mesh;
+  (void)share;
+  (void)user;
+  return DVI_UNSUPPORTED;
+}
+
+static dvi_status see_parts(const char *path, dvi_mesh **share, void *user)
+{
+  bool *is_in_parts = user;
+  (void)path;
+  (void)share;
+  *is_in_parts = true;
+  return DVI_UNSUPPORTED;
+}
+
+/* Tell if the text may name such a file. A scene is read up to its mesh only then. */
+static bool names_file(const char *path)
+{
+  scene_text text;
+  bool found = false;
+  if (scene_load(path, &text) == DONE)
+    for (size_t i = 0; i + 3 <= text.length && !found; i++)
+      found = strncmp(text.text + i, ".h5", 3) == 0;
+  free(text.text);
+  return found;
+}
+
+bool timed_is_in_parts(const timed_request *request)
+{
+  bool found = false;
+  const dvi_scene_division division = {
+      .size = sizeof division, .divide = see_whole, .read = see_parts, .user = &found};
+  dvi_scene *scene = NULL;
+  if (!names_file(request->scene)) return false;
+  (void)dvi_scene_read_share(request->scene, &division, request->settings->count,
+                             request->settings->word, &scene, NULL, 0);
+  dvi_scene_destroy(&scene);
+  return found;
+}
+
+/* ---- marches ---- */
+
+/* Take the method that is asked for, the scene's, or for fields leapfrog. */
+static int choose_method(const timed_request *request, timed_march *timed)
+{
+  static const char *const taken[] = {
+      [TIMED_FIELD] = "leapfrog", [TIMED_SOLID] = "verlet", [TIMED_GRID] = "yee"};
+  const bool is_solid = elastic_of(timed->scene) != NULL;
+  const char *own = timed->scene->method, *method = request->method;
+  if (method == NULL && (is_solid || (own != NULL && strcmp(own, "yee") == 0))) method = own;
+  if (method == NULL && !is_solid) method = "leapfrog";
+  timed->kind = TIMED_FIELD;
+  if (method != NULL && strcmp(method, "yee") == 0) timed->kind = TIMED_GRID;
+  if (is_solid) timed->kind = TIMED_SOLID;
+  timed->method = taken[timed->kind];
+  if (method != NULL && strcmp(method, timed->method) == 0) return DONE;
+  return usage_error(
+      "bench: --scale ranks=: steps of %s are timed, not those of %s; give --method %s",
+      is_solid ? "solids by verlet, which are all equal," : "leapfrog and yee",
+      method != NULL ? method : "another method", timed->method);
+}
+
 int timed_open(const timed_request *request, const dvi_scene_division *division, timed_march *timed)
 {
-  const dvi_march_options options = {
-      .size = sizeof options, .method = "leapfrog", .step = isnan(request->h) ? 0 : request->h};
   dvi_march_facts facts;
   *timed = (timed_march){.h = (double)NAN};
   int code = scene_open_share(request->scene, request->settings, division, &timed->scene);
-  if (code == DONE) code = share_check("bench", timed->scene, "leapfrog", false);
-  if (code == DONE) code = open_march(timed->scene, &options, &timed->march);
+  if (code == DONE) code = choose_method(request, timed);
+  if (code == DONE) code = share_check("bench", timed->scene, timed->method, ranks_count());
+  if (code != DONE) return code;
+  const dvi_march_options options = {
+      .size = sizeof options, .method = timed->method, .step = isnan(request->h) ? 0 : request->h};
+  code = open_march(timed->scene, &options, &timed->march);
   if (code != DONE) return code;
   dvi_march_facts_of(timed->march, &facts);
   timed->h = facts.step;
   return DONE;
+}
+
+double timed_values(const timed_march *timed)
+{
+  return (double)(dvi_march_size(timed->march, DVI_FORM_E) +
+                  dvi_march_size(timed->march, DVI_FORM_B));
+}
+
+const dvi_mesh *timed_mesh(const timed_march *timed)
+{
+  return timed->kind == TIMED_SOLID ? dvi_elastic_mesh(elastic_of(timed->scene))
+                                    : field_mesh(dvi_scene_field(timed->scene->scene));
+}
+
+int timed_degree(const timed_march *timed)
+{
+  return timed->kind == TIMED_FIELD ? dvi_field_degree(dvi_scene_field(timed->scene->scene)) : 0;
+}
+
+int timed_times(const timed_march *timed)
+{
+  return timed->kind == TIMED_SOLID ? dvi_mesh_dimension(timed_mesh(timed)) : 1;
 }
 
 void timed_close(timed_march *timed)

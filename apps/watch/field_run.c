@@ -61,14 +61,14 @@ static int refuse_options(const run_request *r)
               {r->how.control != NULL, "step-control"}};
   if (r->verify)
     return usage_error(
-        "run: --verify is for mechanical methods such as midpoint; compare the rows of "
+        "run: --verify is for mechanical methods such as midpoint%s; compare the rows of "
         "%s, a march of a field, with those of --h at half the step",
-        r->method);
+        ranks_count() > 1 ? " in one process" : "", r->method);
   for (size_t i = 0; i < sizeof list / sizeof *list; i++)
     if (list[i].given)
-      return usage_error("run: --%s is for mechanical methods such as midpoint; %s is a march of a "
-                         "field",
-                         list[i].name, r->method);
+      return usage_error("run: --%s is for mechanical methods such as midpoint%s; %s is a march of "
+                         "a field",
+                         list[i].name, ranks_count() > 1 ? " in one process" : "", r->method);
   if (!isnan(r->h) && !(r->h > 0))
     return usage_error("run: --h %g: a march of a field goes forward", r->h);
   if (!isnan(r->t_end) && !(r->t_end >= 0))
@@ -115,15 +115,17 @@ static void warn_of_bound(journey *j)
 static int prepare_states(const journey *j)
 {
   const char *const path[] = {j->request->checkpoint, j->request->resume};
+  static const char *const with_parts[] = {"leapfrog", "midpoint", "imex", "galerkin"};
   dvi_march_facts facts;
   dvi_march_facts_of(j->march, &facts);
-  const bool has_parts = elastic_of(j->scene) != NULL || strcmp(facts.method, "leapfrog") == 0 ||
-                         strcmp(facts.method, "midpoint") == 0;
+  bool has_parts = elastic_of(j->scene) != NULL;
+  for (size_t i = 0; i < sizeof with_parts / sizeof *with_parts; i++)
+    has_parts = has_parts || strcmp(facts.method, with_parts[i]) == 0;
   for (int i = 0; i < 2; i++) {
     if (ranks_part_state(path[i]) && !has_parts)
       return usage_error(
-          "run: '%s' is a state in parts by its name, which leapfrog and midpoint on "
-          "meshes and solids have, and %s has not; give another name",
+          "run: '%s' is a state in parts by its name, which fields by leapfrog and "
+          "implicit methods on meshes, and solids, have, and %s has not; give another name",
           path[i], facts.method);
     const int code = ranks_prepare_state(path[i]);
     if (code != DONE) return code;

@@ -55,9 +55,10 @@ BEGIN {
   sees["field/pencil"] = "core field/algebra field/mesh"
   sees["field/model"] = "core num solve field/algebra field/mesh field/forms field/pencil"
   sees["field/step"] = "core num march field/algebra field/mesh field/model"
+  sees["field/implicit"] = sees["field/step"] " field/step"
   sees["field/avi"] = sees["field/step"] " field/forms field/step"
   sees["field/tents"] = sees["field/avi"]
-  sees["field/method"] = sees["field/avi"] " field/avi field/tents"
+  sees["field/method"] = sees["field/avi"] " field/avi field/implicit field/tents"
   sees["field/spectra"] = "core"
   sees["field/multiscale"] = "core num field/algebra"
   sees["field/space"] = "core num num/fft space field/algebra field/mesh field/multiscale"
@@ -101,12 +102,13 @@ BEGIN {
   uses["study"] = "cli csv plot"
   uses["mechanics"] = uses["study"] " study load"
   uses["store"] = "cli csv load hdf5 module"
+  uses["shares"] = "cli csv load module"
   uses["bench"] = uses["mechanics"] " mechanics"
-  uses["scaling"] = uses["bench"] " bench module"
+  uses["scaling"] = uses["bench"] " bench module shares"
   uses["frames"] = "cli plot picture hdf5 module"
   uses["watch"] = uses["bench"] " picture hdf5 module store frames"
   uses["view"] = "cli csv load picture module"
-  uses["cmd"] = uses["watch"] " module watch bench scaling sweep boundary varied view"
+  uses["cmd"] = uses["watch"] " module watch bench scaling shares sweep boundary varied view"
   uses["main.c"] = "cli"
   # Single headers of other rooms that a room may include.
   also["reference solve/sundials.h"] = 1

@@ -66,7 +66,7 @@ static int compare_parts(const dvi_mesh *a, const dvi_mesh *b)
   return wrong + (dvi_mesh_part_name(a, p) != dvi_mesh_part_name(b, p));
 }
 
-static int compare_meshes(const dvi_mesh *a, const dvi_mesh *b)
+int share_differs(const dvi_mesh *a, const dvi_mesh *b)
 {
   const int n = dvi_mesh_dimension(a), space = dvi_mesh_space(a);
   if (n != dvi_mesh_dimension(b) || space != dvi_mesh_space(b)) return 1;
@@ -151,12 +151,21 @@ static void check_division(const dvi_mesh *mesh, const whole_run *whole, const c
   expect(status == DVI_OK, "no share", partitioner);
   if (status != DVI_OK) return;
   dvi_mesh *cut = cut_same(mesh, read);
-  expect(cut != NULL && compare_meshes(cut, read) == 0, "another share", partitioner);
+  expect(cut != NULL && share_differs(cut, read) == 0, "another share", partitioner);
   expect(cut != NULL && compare_facts(division, cut, partitioner) == 0, "wrong facts", partitioner);
   if (whole != NULL) expect(run_share(read, rank, whole) == 0, "other bits", partitioner);
   dvi_mesh_destroy(&cut);
   dvi_mesh_destroy(&read);
   dvi_division_destroy(&division);
+}
+
+/* Each process reads the whole mesh, too. */
+static void check_whole(const dvi_mesh *mesh)
+{
+  dvi_mesh *read = NULL;
+  expect(dvi_mesh_read_whole(path, &read) == DVI_OK, "not read", "whole file");
+  expect(read != NULL && share_differs(mesh, read) == 0, "another mesh", "whole file");
+  dvi_mesh_destroy(&read);
 }
 
 /* The mesh is destroyed. `make` is NULL if there is no field on it. */
@@ -165,6 +174,7 @@ static void check_mesh(dvi_mesh *mesh, dvi_field *(*make)(const dvi_mesh *mesh))
   whole_run whole = {.make = make};
   if (make != NULL) run_whole(mesh, &whole);
   write_file(mesh);
+  check_whole(mesh);
   check_division(mesh, make != NULL ? &whole : NULL, "blocks");
   check_division(mesh, make != NULL ? &whole : NULL, "ptscotch");
   if (make != NULL) whole_run_clear(&whole);

@@ -1,6 +1,7 @@
 /* Meshes that are read from files in parts. */
 #ifndef TESTS_PETSC_PARTS_H
 #define TESTS_PETSC_PARTS_H
+#include <dvi/mesh.h>
 #include <stddef.h>
 
 /* Give all processes the same path of a file of this run. */
@@ -11,5 +12,8 @@ void check_parts(void);
 
 /* Try files that are refused, and failures. */
 void check_refused_parts(void);
+
+/* Count what is different in two meshes: 0 if they are the same. */
+int share_differs(const dvi_mesh *a, const dvi_mesh *b);
 
 #endif

@@ -63,6 +63,24 @@ static void refuse_changed(const char *name, hid_t type, hsize_t count, const vo
   refuse(path, status, word);
 }
 
+/* Give a part the name of another one, as long as its own. */
+static int rename_part(const char *name, const char *text)
+{
+  const hid_t file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT),
+              set = H5Dopen2(file, name, H5P_DEFAULT), type = H5Dget_type(set);
+  const int good = H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text) >= 0;
+  (void)H5Tclose(type);
+  (void)H5Dclose(set);
+  return H5Fclose(file) >= 0 && good;
+}
+
+static void refuse_names(void)
+{
+  write_mesh();
+  expect(rank > 0 || rename_part("parts/3/name", "core"), "parts/3/name", "changed");
+  refuse(path, DVI_BAD_FILE, "parts 2 and 3 both are \"core\"");
+}
+
 static void refuse_changes(void)
 {
   const int beyond[3] = {0, 1, 1000}, before[3] = {0, 1, -1}, twice[3] = {1, 1, 2},
@@ -82,13 +100,59 @@ static void refuse_changes(void)
   refuse_changed("parts/2/cells_0", H5T_NATIVE_INT, 3, first, DVI_BAD_FILE, "number 1 in row 2");
 }
 
-static void refuse_cut(void)
+static long size_of_file(void)
 {
   long size = 0;
   FILE *stream = rank == 0 ? fopen(path, "rb") : NULL;
   if (stream != NULL && fseek(stream, 0, SEEK_END) == 0) size = ftell(stream);
   if (stream != NULL) (void)fclose(stream);
   (void)MPI_Bcast(&size, 1, MPI_LONG, 0, MPI_COMM_WORLD);
+  return size;
+}
+
+/* The first process turns the bits of a byte of the file. Returns whether it worked. */
+static int turn_byte(long at)
+{
+  FILE *stream = fopen(path, "r+b");
+  if (stream == NULL) return 0;
+  int byte = fseek(stream, at, SEEK_SET) == 0 ? fgetc(stream) : EOF;
+  if (byte != EOF && fseek(stream, at, SEEK_SET) == 0) byte = fputc(byte ^ 0xff, stream);
+  return fclose(stream) == 0 && byte != EOF;
+}
+
+static dvi_status read_share(dvi_mesh **share, dvi_division **division)
+{
+  const dvi_division_options options = {.size = sizeof options, .partitioner = "blocks"};
+  return dvi_mesh_read_divided(path, &options, share, division);
+}
+
+/* Wherever a byte is damaged, the file is refused, unless nothing is said there. */
+static void refuse_damage(void)
+{
+  dvi_mesh *good, *share;
+  dvi_division *of_good, *division;
+  int refusals = 0;
+  write_mesh();
+  const long size = size_of_file();
+  expect(read_share(&good, &of_good) == DVI_OK, "good", "damage");
+  for (long at = 5; at < size; at += 401) {
+    expect(rank > 0 || turn_byte(at), "turned", "damage");
+    const dvi_status status = read_share(&share, &division);
+    refusals += share == NULL;
+    expect(share != NULL || status == DVI_BAD_FILE, "status", "damage");
+    expect(share == NULL || share_differs(share, good) == 0, "taken", "damage");
+    expect(rank > 0 || turn_byte(at), "turned back", "damage");
+    dvi_mesh_destroy(&share);
+    dvi_division_destroy(&division);
+  }
+  expect(refusals > size / 401 / 2, "few", "damage");
+  dvi_mesh_destroy(&good);
+  dvi_division_destroy(&of_good);
+}
+
+static void refuse_cut(void)
+{
+  const long size = size_of_file();
   for (long cut = size - 1; cut > 0; cut = cut / 3) {
     expect(rank > 0 || truncate(path, cut) == 0, "cut", "file");
     refuse(path, DVI_BAD_FILE, "cut short");
@@ -137,6 +201,8 @@ void check_refused_parts(void)
   refuse_share();
   refuse_memory();
   refuse_changes();
+  refuse_names();
+  refuse_damage();
   refuse_cut();
   if (rank == 0) (void)unlink(path);
 }

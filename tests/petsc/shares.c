@@ -64,6 +64,22 @@ static void check_partition(const dvi_mesh *mesh, const char *partitioner)
   dvi__release(owner);
 }
 
+/* What a refresh brings is what PETSc counts. */
+static void check_traffic(const dvi_mesh *share, dvi_division *division)
+{
+  dvi_division_facts before, after;
+  for (int k = 0; k <= dvi_mesh_dimension(share); k++) {
+    double *values = DVI_NEW(double, dvi_mesh_count(share, k));
+    dvi_division_facts_of(division, &before);
+    (void)dvi_division_refresh(division, k, values);
+    dvi_division_facts_of(division, &after);
+    expect(after.traffic.bytes - before.traffic.bytes == after.bytes_in[k], "other bytes", "");
+    expect(after.traffic.messages - before.traffic.messages == after.messages_in[k],
+           "other messages", "");
+    dvi__release(values);
+  }
+}
+
 /* The owners' values come to all others, as from the library's own refresh. */
 static void check_refresh(const dvi_mesh *share, dvi_division *division)
 {
@@ -100,6 +116,7 @@ static void check_division(const dvi_mesh *mesh, const whole_run *whole, const c
   dvi_division_facts_of(division, &facts);
   expect(facts.agreements > agreements, "no agreements are counted", partitioner);
   check_refresh(share, division);
+  check_traffic(share, division);
   check_partition(mesh, partitioner);
   dvi_mesh_destroy(&share);
   dvi_division_destroy(&division);

@@ -125,18 +125,22 @@ typedef struct dvi_yee_flux {
   double lower[3], upper[3];
 } dvi_yee_flux;
 
-/** Processes that hold a grid together. Its last axis is divided: each of them has the boxes from
- *  floor(cells*rank/count) on, and the nodes at their lower ends; the last one also has the last
- *  node. All of them have the same terms, but for this, and make the same calls in the same order.
- *  A function returns 0, or another number on all processes if it failed on one of them. */
+/** Processes that hold a grid together. They divide y and z of three axes, and y of two, by
+ *  `parts`: the process rank = p[1] + parts[1] p[2] has the boxes from floor(cells p/parts) of an
+ *  axis on, and the nodes at their lower ends. The last one of an axis also has its last node. All
+ *  of them have the same terms, but for `rank` and `user`, and make the same calls in the same
+ *  order. A function returns 0, or another number on all processes if it failed on one of them. */
 typedef struct dvi_yee_ranks {
   size_t size; /**< sizeof(dvi_yee_ranks) */
   int rank;    /**< the number of this process, from 0 */
   int count;   /**< the number of processes, 1 or more */
-  /** Send numbers [count] to the process rank + way, where `way` is 1 or -1, and receive as many of
-   *  the process rank - way. With `around` the first process follows the last one. Without it, the
-   *  process at an end sends to none, or receives of none. */
-  int (*pass)(int way, int around, int64_t count, const double *sent, double *received, void *user);
+  /** Processes along each axis, of which `count` is the product, 1 along x. 0 along an axis: as
+   *  many as pay. Default: slabs of the last axis while they have 12 boxes or more, and otherwise
+   *  the division with the least surface */
+  int parts[3];
+  /** Send numbers [count] to the process `to`, and receive as many of the process `from`, of which
+   *  one may be -1: none. */
+  int (*pass)(int to, int from, int64_t count, const double *sent, double *received, void *user);
   /** Set numbers [count] to their sums over all processes. They do not overflow. */
   int (*sum)(int count, int64_t *number, void *user);
   /** Set numbers [count] to the largest ones of all processes. */
@@ -166,9 +170,9 @@ typedef struct dvi_yee_terms {
   double span;
   int threads; /**< default 1. The bits do not depend on it */
   /** Steps that are taken together while their fields are in a cache. Axes y and z that repeat
-   *  themselves allow only 1, but for one without a phase that is divided. A divided grid allows as
-   *  many as each process has planes, and planes go to neighbours once for all of them. The bits do
-   *  not depend on it. Default: as many as pay */
+   *  themselves allow only 1, but for those without a phase that are divided. A divided grid allows
+   *  as many as each process has planes of a divided axis, and planes go to neighbours once for all
+   *  of them. The bits do not depend on it. Default: as many as pay */
   int together;
   const dvi_yee_ranks *ranks; /**< copied. Default: one process has the whole grid */
 } dvi_yee_terms;

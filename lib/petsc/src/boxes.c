@@ -1,5 +1,5 @@
-/* Grids of boxes that are divided along one axis: planes go to the two neighbours only, which needs
- * no DMDA. */
+/* Grids of boxes that are divided along axes: planes go from one process to another, which needs no
+ * DMDA. */
 #include <dvi/petsc.h>
 
 #include "core/memory.h"
@@ -8,25 +8,20 @@
 
 enum { MOST = 1 << 28 }; /* numbers in a message */
 
-/* Give the process that is that far, or none. */
-static int process_at(const dvi__world *world, int away, int around)
+static int process_of(int rank)
 {
-  const int at = world->rank + away;
-  if (at >= 0 && at < world->count) return at;
-  return around ? (at + world->count) % world->count : MPI_PROC_NULL;
+  return rank >= 0 ? rank : MPI_PROC_NULL;
 }
 
 /* MPI counts by int. */
-static int pass(int way, int around, int64_t count, const double *sent, double *received,
-                void *user)
+static int pass(int to, int from, int64_t count, const double *sent, double *received, void *user)
 {
   const dvi__world *world = user;
-  const int to = process_at(world, way, around), from = process_at(world, -way, around);
   int failed = MPI_SUCCESS;
   for (int64_t done = 0; done < count && failed == MPI_SUCCESS; done += MOST) {
     const int next = (int)(count - done < MOST ? count - done : MOST);
-    failed = MPI_Sendrecv(sent + done, next, MPI_DOUBLE, to, 0, received + done, next, MPI_DOUBLE,
-                          from, 0, world->comm, MPI_STATUS_IGNORE);
+    failed = MPI_Sendrecv(sent + done, next, MPI_DOUBLE, process_of(to), 0, received + done, next,
+                          MPI_DOUBLE, process_of(from), 0, world->comm, MPI_STATUS_IGNORE);
   }
   return failed;
 }

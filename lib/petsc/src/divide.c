@@ -7,6 +7,7 @@
 #include "division.h"
 #include "owners.h"
 #include "solve/solver.h"
+#include "traffic.h"
 
 /* ---- how processes speak with each other ---- */
 
@@ -214,6 +215,7 @@ static dvi_status take_place(const dvi_division_options *options, dvi_division *
     return status;
   }
   (*made)->world = world;
+  (*made)->before = dvi__traffic_so_far();
   return dvi__world_agree(&world, DVI_OK);
 }
 
@@ -266,11 +268,25 @@ dvi_status dvi_mesh_divide(const dvi_mesh *mesh, const dvi_division_options *opt
   return status;
 }
 
+static dvi_division_traffic show(dvi__traffic t)
+{
+  return (dvi_division_traffic){
+      .messages = t.messages, .bytes = t.bytes, .sums = t.sums, .gathers = t.gathers};
+}
+
 void dvi_division_facts_of(const dvi_division *division, dvi_division_facts *facts)
 {
   if (division == NULL || facts == NULL) return;
+  const dvi__world *world = &division->world;
+  dvi__traffic traffic = dvi__traffic_since(dvi__traffic_so_far(), division->before);
+  traffic.messages += world->letters.messages;
+  traffic.bytes += world->letters.bytes;
   *facts = division->facts;
-  facts->agreements = division->world.agreements;
+  facts->agreements = world->agreements;
+  facts->traffic = show(traffic);
+  facts->corrections = world->corrections;
+  facts->iterations = world->iterations;
+  facts->iteration = show(world->iteration);
 }
 
 dvi_status dvi_division_refresh(dvi_division *division, int degree, double *values)

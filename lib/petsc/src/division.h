@@ -14,6 +14,7 @@ struct dvi_division {
   PetscSF forest[DVI__DEGREES]; /* roots are the owners' cells, leaves the ghosts */
   char partitioner[DVI__NAME_SIZE];
   dvi_division_facts facts;
+  dvi__traffic before; /* what PETSc had counted */
 };
 
 /* Begin a division: check that PETSc runs, choose the partitioner, and join the processes. Whatever

@@ -83,12 +83,14 @@ int dvi__world_send(int to, int count, const double *number, void *world)
 
 int dvi__world_receive(int from, int most, double *number, int *count, void *world)
 {
-  const dvi__world *w = world;
+  dvi__world *w = world;
   MPI_Status status;
   MPI_Message message;
   int failed = MPI_Mprobe(from, 0, w->comm, &message, &status);
   if (failed == MPI_SUCCESS) failed = MPI_Get_count(&status, MPI_DOUBLE, count);
   if (failed != MPI_SUCCESS || *count > most) return failed != MPI_SUCCESS ? failed : MPI_ERR_COUNT;
+  w->letters.messages++;
+  w->letters.bytes += *count * (int64_t)sizeof *number;
   return MPI_Mrecv(number, *count, MPI_DOUBLE, &message, MPI_STATUS_IGNORE);
 }
 

@@ -5,11 +5,16 @@
 #include <mpi.h>
 #include <stdint.h>
 
+#include "traffic.h"
+
 typedef struct dvi__world {
   MPI_Comm comm;
   int rank, count;                  /* this process, and how many there are */
   int64_t agreements;               /* sums and largest numbers so far */
   struct dvi__letter *on_their_way; /* numbers that may not have been taken */
+  dvi__traffic letters;             /* those that were received */
+  int64_t corrections, iterations;  /* of the solver */
+  dvi__traffic iteration;           /* of the last one of these */
 } dvi__world;
 
 /* Join a copy of a communicator, whose errors are returned. MPI_COMM_NULL and 0 are all processes.

@@ -312,9 +312,23 @@ static dvi_status find_fixed(const dvi__sections *sections, const char *name, ui
   return DVI_OK;
 }
 
+/* Refuse the state of a march. */
+static dvi_status refuse_march(const dvi__sections *sections)
+{
+  if (dvi__sections_have(sections, "method") || !dvi__sections_have(sections, "forms"))
+    return DVI_OK;
+  return dvi__fail(
+      DVI_BAD_FILE,
+      "%s: it is the state of a march of a field, and of no integrator. Processes that "
+      "share a mesh (mpirun) write it with implicit methods, too, and 2 or more of them "
+      "go on from it",
+      sections->name);
+}
+
 static dvi_status find_method(checkpoint *c)
 {
   dvi__section found;
+  DVI_TRY(refuse_march(&c->sections));
   DVI_TRY(dvi__section_find(&c->sections, "method", SECTION_VERSION, DVI__ANY_SIZE, &found));
   if (found.size <= sizeof c->method || found.content[found.size - 1] != 0)
     return dvi__fail(DVI_BAD_FILE, "%s: section 'method' has no specification", c->sections.name);

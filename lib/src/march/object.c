@@ -48,9 +48,10 @@ static dvi_status check_started(const dvi_march *march)
   if (!march->started)
     return dvi__fail(DVI_BAD_STATE, "march: it has not been started; call dvi_march_start first");
   if (march->kind->is_lost == NULL || !march->kind->is_lost(march->self)) return DVI_OK;
-  return dvi__fail(DVI_BAD_STATE,
-                   "march: its processes could not exchange their values; start it again, or load "
-                   "a saved state");
+  return dvi__fail(
+      DVI_BAD_STATE,
+      "march: its values are lost, because they have overflowed or its processes could "
+      "not exchange them; start it again, or load a saved state");
 }
 
 dvi_status dvi__march_agree(const dvi_march *march, dvi_status status)
@@ -117,14 +118,17 @@ int64_t dvi_march_size(const dvi_march *march, dvi_march_form form)
   return march->kind->size(march->self, form);
 }
 
+/* Nobody gets values of which some are not finite. */
 static dvi_status check_values(const dvi_march *march, dvi_march_form form, int64_t count,
-                               const int *cell, const double *values)
+                               const int *cell, double *values)
 {
-  for (int64_t i = 0; i < count; i++)
-    if (!isfinite(values[i]))
-      return dvi__fail(DVI_NOT_FINITE, "march: %s is %g in cell %lld at t = %g", form_name[form],
-                       values[i], (long long)(cell != NULL ? cell[i] : i), dvi_march_time(march));
-  return DVI_OK;
+  int64_t i = 0;
+  while (i < count && isfinite(values[i])) i++;
+  if (i == count) return DVI_OK;
+  const double found = values[i];
+  memset(values, 0, (size_t)count * sizeof *values);
+  return dvi__fail(DVI_NOT_FINITE, "march: %s is %g in cell %lld at t = %g", form_name[form], found,
+                   (long long)(cell != NULL ? cell[i] : i), dvi_march_time(march));
 }
 
 dvi_status dvi_march_sample(const dvi_march *march, dvi_march_form form, int64_t count,

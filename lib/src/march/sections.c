@@ -209,6 +209,17 @@ void dvi__sections_clear(dvi__sections *s)
 
 /* ---- find ---- */
 
+int dvi__sections_have(const dvi__sections *s, const char *name)
+{
+  section_header header;
+  size_t at = sizeof(file_header), next;
+  for (; check_section(s, at, &header, &next) == DVI_OK; at = next) {
+    if (section_is_named(&header, name)) return 1;
+    if (section_is_named(&header, end_name)) return 0;
+  }
+  return 0;
+}
+
 dvi_status dvi__section_find(const dvi__sections *s, const char *name, uint32_t version,
                              size_t size, dvi__section *found)
 {

@@ -62,6 +62,9 @@ dvi_status dvi__sections_check(dvi__sections *sections, const char *name, const 
 
 void dvi__sections_clear(dvi__sections *sections);
 
+/* Tell if there is a section of a name. */
+int dvi__sections_have(const dvi__sections *sections, const char *name);
+
 /* Find a section. DVI_BAD_FILE if there is none, if its version is another one, or if its content
  * has another number of bytes than `size`. */
 #define DVI__ANY_SIZE SIZE_MAX

@@ -233,6 +233,15 @@ dvi_status dvi_scene_read(const char *path, int setting_count, const char *const
   return read_path(path, NULL, setting_count, settings, scene, message, size);
 }
 
+/* Write a sentence about a part of the text, or about all of it. */
+static void tell(const dvi_scene *scene, const dvi__tree *about, const char *sentence,
+                 char *message, size_t size)
+{
+  dvi__complaint complaint = {.source = &scene->source, .message = message, .size = size};
+  (void)dvi__complain(&complaint, DVI_BAD_FILE, about != NULL ? about->span : DVI__NOWHERE, "%s",
+                      sentence);
+}
+
 dvi_status dvi_scene_read_share(const char *path, const dvi_scene_division *division,
                                 int setting_count, const char *const *settings, dvi_scene **scene,
                                 char *message, size_t size)
@@ -242,10 +251,10 @@ dvi_status dvi_scene_read_share(const char *path, const dvi_scene_division *divi
     return write_failure(message, size, DVI_BAD_ARGUMENT, "scene");
   dvi_status status = read_path(path, division, setting_count, settings, scene, message, size);
   if (status != DVI_OK || dvi__is_share(*scene) || dvi__has_divided_grid(*scene)) return status;
-  dvi_scene_tell(*scene, "lagrangian",
-                 "several processes share fields of waves, Maxwell's and solids on "
-                 "meshes, and this scene has none",
-                 message, size);
+  tell(*scene, dvi__motion_section(*scene),
+       "several processes share fields of waves, Maxwell's and solids on meshes, and this scene "
+       "has none: run it in one process",
+       message, size);
   dvi_scene_destroy(scene);
   return DVI_UNSUPPORTED;
 }
@@ -335,11 +344,7 @@ const char *dvi_scene_unused(const dvi_scene *scene, int i)
 void dvi_scene_tell(const dvi_scene *scene, const char *section, const char *sentence,
                     char *message, size_t size)
 {
-  if (scene == NULL) return;
-  const dvi__tree *tree = dvi__tree_find(scene->tree, section);
-  dvi__complaint complaint = {.source = &scene->source, .message = message, .size = size};
-  (void)dvi__complain(&complaint, DVI_BAD_FILE, tree != NULL ? tree->span : DVI__NOWHERE, "%s",
-                      sentence);
+  if (scene != NULL) tell(scene, dvi__tree_find(scene->tree, section), sentence, message, size);
 }
 
 const dvi_scene_event *dvi_scene_event_at(const dvi_scene *scene, int i)

@@ -15,6 +15,10 @@ as_one 3 torus.yaml --columns energy,gauss,e
 as_one 4 box.yaml --every 5
 as_one 2 probes.yaml
 as_one 4 grid.yaml
+columns=energy,growth,momentum_x,angular_z,tip_z,middle
+as_one 2 solid.yaml --columns $columns
+as_one 4 solid.yaml --columns $columns --method verlet
+as_one 3 solid.yaml --columns $columns --method avi:classes=no
 sed -e 's/{cpml: 2}/absorbing/' \
   -e 's/^  s: .*/  s: {of: B, at: [0.9, 0.9, 0.9], along: [0, 0, 1]}/' grid.yaml >walls.yaml
 as_one 3 walls.yaml --columns energy,gauss,charge,divergence,e,s
@@ -62,17 +66,64 @@ together 1 'cannot write' wave.yaml --out rows.csv --pvd /nowhere/u.pvd
 together 2 'the name ends in .pvd' wave.yaml --pvd u.vtu
 together 2 'is on a mesh of more dimensions' wave.yaml --map u.svg
 
-# By midpoint any number of processes writes the same rows, which are those of one up to roundoff.
-{ cat wave.yaml; echo 'potential: 1 - cos(u)'; } >kink.yaml
-for count in 1 2 3; do
-  by $count kink.yaml --method midpoint --h 0.05 --every 5 >rows$count.csv ||
-    fail "$count processes: no rows by midpoint"
+# ---- implicit methods ----
+
+# By implicit methods any number of processes writes the same rows, which are those of one up to
+# roundoff. Their last step is shorter where h does not divide the time.
+for method in midpoint imex galerkin:degree=2; do
+  for count in 1 2 3; do
+    by $count kink.yaml --method $method --h 0.05 --t-end 0.53 --every 2 >rows$count.csv ||
+      fail "$count processes: no rows by $method"
+  done
+  same rows2.csv rows3.csv "two and three processes by $method"
+  paste -d , rows1.csv rows3.csv | awk -F , '
+    NR == 1 { if ($1 != $3 || $2 != $4) exit 1; next }
+    $1 != $3 || ($2 - $4) ^ 2 > 1e-26 { exit 1 }
+    END { if (NR != 8 || $1 != 0.53) exit 1 }' ||
+    fail "$method: $(cat rows3.csv), and of one $(cat rows1.csv)"
 done
-same rows2.csv rows3.csv "two and three processes by midpoint"
-paste -d , rows1.csv rows3.csv | awk -F , '
-  NR == 1 { if ($1 != $3 || $2 != $4) exit 1; next }
-  $1 != $3 || ($2 - $4) ^ 2 > 1e-26 { exit 1 }
-  END { if (NR != 6) exit 1 }' || fail "midpoint: $(cat rows3.csv), and of one $(cat rows1.csv)"
+
+# The states of several processes go on with other numbers of them. That of one is another file.
+for count in 1 2; do
+  by $count kink.yaml --method midpoint --h 0.05 --t-end 0.5 --checkpoint from$count.state >half ||
+    fail "$count processes: no state of midpoint"
+done
+by 2 kink.yaml --method galerkin --h 0.05 --t-end 0.5 --checkpoint half.state >half ||
+  fail "no state of galerkin"
+by 2 kink.yaml --method galerkin --h 0.05 --t-end 1 --every 5 | tail -n 2 >whole
+by 3 kink.yaml --method galerkin --h 0.05 --t-end 1 --every 5 --resume half.state >part
+tail -n 2 part >rest
+same whole rest "two processes and then three by galerkin"
+together 2 'galerkin on shares has degree=1 or degree=2' wave.yaml --method galerkin:degree=3
+together 1 'is the state of an integrator, and of no march' kink.yaml --method midpoint --h 0.05 \
+  --resume from1.state
+by 1 kink.yaml --method midpoint --h 0.05 --resume from2.state 2>err && fail "one goes on"
+says err 'it is the state of a march of a field' 'the state of two processes'
+
+# ---- steps of more processes ----
+
+# Solids, and meshes that no process reads as a whole.
+"$dvi" mesh bcc-torus --cells 3,3,3 --size 1,1,1 --write torus.h5 >out || fail "no torus.h5"
+sed 's/^mesh: .*/mesh: {file: torus.h5}/' torus.yaml >parts.yaml
+for scene in 'bar.yaml --method verlet' parts.yaml; do
+  # shellcheck disable=SC2086
+  mpirun -np 3 "$dvi" bench $scene --scale ranks=1,2,3,...,40 --rounds 1 --steps 2 \
+    --csv scale.csv >out || fail "$scene: no scaling"
+  awk -F, '$1 == "strong" { rows++; measured += $10 != ""; bad += !($5 > 0 && $6 > 0) }
+    END { exit !(rows >= 8 && measured == 3 && !bad) }' scale.csv ||
+    fail "$scene: $(cat scale.csv)"
+done
+says out '^  start: ranks read the mesh in parts' parts.yaml
+says out '^mesh: 324 cells' parts.yaml
+# Maxwell's fields by midpoint: the same energy as that of the system on one process.
+for count in 1 2 3; do
+  by $count torus.yaml --method midpoint --h 0.1 --columns energy --out torus$count.csv ||
+    fail "$count processes: no Maxwell by midpoint"
+done
+same torus2.csv torus3.csv "two and three processes by midpoint"
+paste -d , torus1.csv torus3.csv | awk -F , '
+  NR > 1 && ($1 != $3 || ($2 - $4) ^ 2 > 1e-28) { exit 1 }' ||
+  fail "Maxwell by midpoint: $(cat torus3.csv), and of one $(cat torus1.csv)"
 
 # ---- checkpoints ----
 
@@ -109,6 +160,7 @@ every_way() {
 }
 every_way wave.yaml --h 0.002 --every 4
 every_way grid.yaml --h 0.01 --every 5
+every_way solid.yaml --h 0.004 --every 5 --method verlet
 
 # in_parts SCENE OPTION...: the same with states in parts.
 in_parts() {
@@ -187,13 +239,34 @@ says err '^dvi: run: signal 15 ended the run at t' 'a signal to mpirun'
 
 alone 'MPI knows of 1'
 together 2 'kepler is none' kepler
-together 2 'leapfrog and midpoint alone, not verlet' wave.yaml --method verlet
+together 2 'leapfrog, midpoint, imex and galerkin alone, not verlet' wave.yaml --method verlet
 # The process that owns the stiffest cell speaks.
 together 1 'the step 1 is not below the bound' wave.yaml --h 1
 sed 's/exp(/sqrt(x - 0.5)*exp(/' wave.yaml >nan.yaml
 sed 's/0.9, 0.13/3, 4/' probes.yaml >outside.yaml
 together 2 'the start is not finite at vertex' nan.yaml # on one process, on which the others wait
-together 2 '--method yee: several processes share yee on grids' wave.yaml --method yee
+together 2 'run: 2 processes share yee alone, not avi; take yee, or' grid.yaml --method avi
+together 2 'run: 2 processes share avi and verlet alone, not tents; take avi, or' solid.yaml \
+  --method tents
+together 2 'kink.yaml:7:9: march: the field has a potential, .*; midpoint does' kink.yaml
+together 2 '--method yee: several processes share yee on grids' torus.yaml --method yee
+together 2 'run: --alarm is for mechanical methods such as midpoint in one process' wave.yaml \
+  --alarm energy=1
+
+# edited SCENE EDIT PLACE WORDS: processes refuse an edited scene at a place.
+edited() {
+  sed "$2" "$1" >edited.yaml
+  together 2 "edited.yaml:$3: .*$4" edited.yaml
+}
+edited wave.yaml 's/^method: .*/method: yee/' 7:9 'midpoint, imex and galerkin alone, not yee'
+edited wave.yaml 's/^boundary.*/&\nstar: barycentric/' 6:7 'not diagonal .* take midpoint, the c'
+edited wave.yaml 's/^boundary.*/&\ndamping: 0.1/' 6:10 'takes the friction in one process'
+edited torus.yaml 's/^field.*/&\nstar: whitney/' 3:7 'not diagonal .* take the circumcentric star'
+edited torus.yaml 's/{E: .*/{B: [0, 0, 1]}/' 5:10 'take a start by A, or one process'
+edited solid.yaml 's/alpha: 0.1/beta: 0.1/' 3:12 'a damping beta .* take one process'
+edited wave.yaml 's/^field: .*/space: fem:degree=1\nfields: {u: scalar}\ndensity: u'"'"'^2\/2/
+  /^ *all/d; /^materials/d; s/fixed/free/; s/leapfrog/midpoint/; s/{fraction: 0.5}/0.1/' 4:10 \
+  'no densities: run this one in one process'
 sed -e 's/cells: .*/cells: [50]}/' -e 's/{E: .*/{E: x}/' -e '/^ *[es]:/d' -e '/^probes/d' \
   -e '/cpml/d' grid.yaml >line.yaml
 together 2 'yee: a grid of one axis cannot be divided' line.yaml

@@ -60,6 +60,39 @@ step: {fraction: 0.5}
 until: 1
 SCENE
 
+# A grid of which steps are taken together.
+cat >deep.yaml <<'SCENE'
+mesh: {generator: box, cells: [16, 32, 80]}
+field: maxwell
+boundary: {boundary: pec, left: {cpml: 3}}
+initial: {E: [sin(pi*y), 0, cos(2*pi*x)]}
+method: yee
+step: {fraction: 0.5}
+until: 1
+SCENE
+cat >bar.yaml <<'SCENE'
+mesh: {generator: kuhn, cells: [8, 2, 2], size: [3, 1, 1]}
+field: elastic
+materials: {all: {law: linear, young: 200, poisson: 0.3, rho: 1}}
+boundary: {left: fixed}
+initial: {u': "[0, 0, 0.1*x]"}
+method: avi
+step: {fraction: 0.6}
+until: 1
+SCENE
+cat >solid.yaml <<'SCENE'
+mesh: {generator: kuhn, cells: [4, 2, 2], size: [2, 1, 1], grading: [1.4, 1, 1]}
+field: elastic
+materials: {all: {law: neo-hookean, young: 1, poisson: 0.3, rho: 1, alpha: 0.1}}
+boundary: {left: {fixed: "[0, 0.1*sin(t), 0]"}}
+loads: {gravity: "[0, 0, -0.1]", right: {traction: "[0, -0.05*t, 0]"}}
+probes: {tip: {of: x, at: [2, 1, 1]}, middle: {of: von_mises, at: [1, 0.4, 0.3]}}
+method: avi
+step: {fraction: 0.5}
+until: 1
+SCENE
+{ cat wave.yaml; echo 'potential: 1 - cos(u)'; } >kink.yaml
+
 # by N ARGUMENT...: dvi run by N processes, without mpirun if N is 1.
 by() {
   ranks=$1

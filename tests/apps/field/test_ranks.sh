@@ -18,6 +18,7 @@ if [ ! -e "$(dirname "$dvi")/dvi_petsc.so" ]; then
 fi
 as_one 3 probes.yaml
 as_one 2 grid.yaml
+as_one 3 solid.yaml
 drawn 3 pvd field.pvd torus.yaml --every 12
 killed 3 1 2
 
@@ -37,6 +38,9 @@ says err 'is a state in parts by its name' 'a state of a mechanical system'
 sed 's/^mesh: .*/mesh: {file: torus.h5}/' torus.yaml >parts.yaml
 "$dvi" mesh bcc-torus --cells 3,3,3 --size 1,1,1 --write torus.h5 >out ||
   fail "torus.h5 is not written"
+"$dvi" mesh torus.h5 >again || fail "torus.h5 is not described"
+grep -v '^bcc-torus:' out >described
+grep -v '^torus.h5:' again | cmp -s - described || fail "another mesh: $(cat again)"
 "$dvi" run parts.yaml >out 2>err && fail "one process reads a mesh in parts"
 says err "several processes read 'torus.h5' in parts (mpirun -np 2 dvi run)" parts.yaml
 "$dvi" run torus.yaml --columns energy,gauss,e --out one.csv || fail "torus.yaml: dvi run fails"

@@ -10,7 +10,7 @@
 #include "support/suite.h"
 #include "support/waves/boxes.h"
 
-enum { PROCESSES = 5, TRIALS = 20 };
+enum { PROCESSES = 6, TRIALS = 18 };
 
 typedef struct processes {
   const box_trial *trial;
@@ -28,7 +28,7 @@ static void run_rank(const dvi_yee_ranks *ranks, void *user)
 START_TEST(values_have_the_bits_of_one_process)
 {
   box_trial *trial = make_box_trial(_i);
-  for (int count = 1 + _i % 3; count <= PROCESSES; count += 3) {
+  for (int count = 2 + _i % 2; count <= PROCESSES; count *= 2) {
     processes p = {.trial = trial};
     run_box_ranks(count, run_rank, &p);
     for (int r = 0; r < count; r++)
@@ -54,11 +54,11 @@ static int none_of(int count, int64_t *number, void *user)
 }
 
 /* A pass of which the calls fail from a certain one on. */
-static int failing(int way, int around, int64_t count, const double *sent, double *received,
+static int failing(int to, int from, int64_t count, const double *sent, double *received,
                    void *user)
 {
   int *left = user;
-  (void)way, (void)around, (void)count, (void)sent, (void)received;
+  (void)to, (void)from, (void)count, (void)sent, (void)received;
   return --*left < 0 ? 17 : 0;
 }
 
@@ -88,8 +88,19 @@ START_TEST(bad_divisions_are_refused)
   refuse(&small, &ranks, DVI_BAD_ARGUMENT, "yee: there is no process 2 of 2");
   ranks = good, ranks.pass = NULL;
   refuse(&small, &ranks, DVI_BAD_ARGUMENT, "by which processes speak are not all given");
+  ranks = good, ranks.parts[1] = -2;
+  refuse(&small, &ranks, DVI_BAD_ARGUMENT, "yee: ranks.parts is -2 for axis y; set 0 or more");
+  ranks = good, ranks.parts[0] = 2;
+  refuse(&small, &ranks, DVI_UNSUPPORTED, "yee: axis x is to have 2 parts, but is not divided");
+  ranks = good, ranks.count = 1, ranks.parts[1] = 2;
+  refuse(&small, &ranks, DVI_BAD_ARGUMENT, "among 1 processes by 0 x 2 x 0 parts");
+  ranks = good, ranks.parts[2] = 2;
+  refuse(&small, &ranks, DVI_BAD_ARGUMENT, "by 0 x 0 x 2 parts");
+  ranks = good, ranks.parts[1] = 1;
+  refuse(&small, &ranks, DVI_BAD_ARGUMENT, "by 0 x 1 x 0 parts, where 0 is any number");
   ranks = good, ranks.count = 3;
-  refuse(&small, &ranks, DVI_BAD_ARGUMENT, "yee: axis y has 5 boxes, and 3 processes need 2 each");
+  refuse(&small, &ranks, DVI_BAD_ARGUMENT,
+         "yee: 3 x 5 x 1 boxes cannot be divided among 3 processes by 0 x 0 x 0 parts");
   refuse(&line, &good, DVI_UNSUPPORTED, "yee: a grid of one axis cannot be divided");
 }
 END_TEST
@@ -124,6 +135,45 @@ START_TEST(places_are_those_of_the_whole_grid)
 }
 END_TEST
 
+/* Give the process, of `count`, that has a box of a grid. */
+static int owner_of(const dvi_yee_terms *terms, dvi_yee_ranks *ranks, const int *box)
+{
+  dvi_yee_terms divided = *terms;
+  divided.ranks = ranks;
+  for (ranks->rank = 0; ranks->rank < ranks->count; ranks->rank++)
+    if (dvi_yee_place(&divided, DVI_FORM_E, 0, box) >= 0) return ranks->rank;
+  return -1;
+}
+
+/* Check who has the last box of y and the first one of z, and the other way round. */
+static void check_division(int rows, int planes, int count, const int *parts, int last_row,
+                           int last_plane)
+{
+  const int across[] = {0, rows - 1, 0}, up[] = {0, 0, planes - 1};
+  const dvi_yee_terms terms = {.size = sizeof terms,
+                               .axes = 3,
+                               .degree = 1,
+                               .axis = {{.cells = 1}, {.cells = rows}, {.cells = planes}}};
+  dvi_yee_ranks ranks = {
+      .size = sizeof ranks, .count = count, .pass = failing, .sum = none_of, .largest = none};
+  memcpy(ranks.parts, parts, sizeof ranks.parts);
+  ck_assert_int_eq(owner_of(&terms, &ranks, across), last_row);
+  ck_assert_int_eq(owner_of(&terms, &ranks, up), last_plane);
+}
+
+START_TEST(divisions_are_slabs_until_these_are_thin)
+{
+  static const int any[3] = {0}, rows[3] = {1, 4, 0}, planes[3] = {0, 0, 8};
+  check_division(48, 48, 4, any, 0, 3);
+  check_division(48, 47, 4, any, 1, 2);
+  check_division(48, 48, 4, rows, 3, 0);
+  check_division(48, 48, 16, planes, 1, 14);
+  check_division(12, 48, 12, any, 1, 10); /* 2 x 6 */
+  check_division(96, 4, 8, any, 7, 0);
+  check_division(2, 22, 11, any, 0, 10);
+}
+END_TEST
+
 /* A march that lost the others says so until it is started again. */
 START_TEST(a_failure_to_speak_is_told_until_a_start)
 {
@@ -154,7 +204,7 @@ END_TEST
 
 /* How often planes go in 8 steps, and in two looks at the energy thereafter. */
 typedef struct exchanges {
-  int together, passes[PROCESSES], looks[PROCESSES];
+  int axes, together, passes[PROCESSES], looks[PROCESSES];
 } exchanges;
 
 static void count_exchanges(const dvi_yee_ranks *ranks, void *user)
@@ -163,7 +213,8 @@ static void count_exchanges(const dvi_yee_ranks *ranks, void *user)
   watched_ranks watched = {.ranks = ranks};
   const dvi_yee_ranks watching = watch_ranks(&watched);
   dvi_yee_terms terms = small;
-  terms.axis[1].cells = 12;
+  terms.axes = e->axes;
+  terms.axis[1].cells = terms.axis[2].cells = 12;
   terms.ranks = &watching;
   terms.together = e->together;
   dvi_march *march = box_march(&terms);
@@ -178,24 +229,26 @@ static void count_exchanges(const dvi_yee_ranks *ranks, void *user)
   dvi_march_destroy(&march);
 }
 
-static void check_exchanges(int together, int passes, int looks)
+static void check_exchanges(int count, int together, int passes, int looks)
 {
-  exchanges e = {.together = together};
-  run_box_ranks(3, count_exchanges, &e);
-  for (int r = 0; r < 3; r++) {
+  exchanges e = {.axes = count == 3 ? 2 : 3, .together = together};
+  run_box_ranks(count, count_exchanges, &e);
+  for (int r = 0; r < count; r++) {
     ck_assert_int_eq(e.passes[r], passes);
     ck_assert_int_eq(e.looks[r], looks);
   }
 }
 
-/* One in both directions for each block of steps, of which no more go together than there are
- * planes, and one for what is looked at. */
+/* One in both directions of an axis for each block of steps, of which no more go together than
+ * there are planes, and one for what is looked at: 3 slabs, and 2 x 2 processes. */
 START_TEST(steps_that_go_together_exchange_planes_once)
 {
-  check_exchanges(1, 2 * 8, 0);
-  check_exchanges(2, 2 * 4, 2);
-  check_exchanges(4, 2 * 2, 2);
-  check_exchanges(16, 2 * 2, 2);
+  check_exchanges(3, 1, 2 * 8, 0);
+  check_exchanges(3, 2, 2 * 4, 2);
+  check_exchanges(3, 4, 2 * 2, 2);
+  check_exchanges(3, 16, 2 * 2, 2);
+  check_exchanges(4, 1, 4 * 8, 0);
+  check_exchanges(4, 4, 4 * 2, 4);
 }
 END_TEST
 
@@ -309,6 +362,7 @@ SUITE(yee_ranks)
   tcase_add_test(tests, bad_divisions_are_refused);
   tcase_add_test(tests, one_process_needs_no_other);
   tcase_add_test(tests, places_are_those_of_the_whole_grid);
+  tcase_add_test(tests, divisions_are_slabs_until_these_are_thin);
   tcase_add_test(tests, a_failure_to_speak_is_told_until_a_start);
   tcase_add_test(tests, steps_that_go_together_exchange_planes_once);
   tcase_add_test(tests, a_signal_that_fails_on_one_process_loses_nothing);

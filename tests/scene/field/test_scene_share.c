@@ -155,9 +155,18 @@ START_TEST(what_needs_the_whole_mesh_is_refused)
   check_refused(SOLID "materials: {all: {law: svk, lambda: 1, mu: 1}, stiff: {law: svk, lambda: 9, "
                       "mu: 9}}\nloads: {gravity: [0, 0, -1]}\n",
                 DVI_BAD_FILE, "no part 'stiff'");
+  check_refused(MAXWELL "star: whitney\nboundary: {boundary: pec}\n", DVI_UNSUPPORTED,
+                "not diagonal needs a whole mesh, which 3 processes share: take the circumcentric");
+  check_refused("mesh: {generator: kuhn, cells: [2, 2]}\nspace: fem:degree=1\nfields: {u: scalar}\n"
+                "density: u'^2/2\ninitial: {u: x}\nmethod: midpoint\nstep: 0.1\nuntil: 1\n",
+                DVI_UNSUPPORTED,
+                ":4:10: several processes share fields of waves, Maxwell's and "
+                "solids, and no densities");
   check_refused("coordinates: {q: scalar}\nlagrangian: q'^2/2\ninitial: {q: 1}\nmethod: verlet\n"
                 "step: 0.1\nuntil: 1\n",
-                DVI_UNSUPPORTED, "this scene has none");
+                DVI_UNSUPPORTED,
+                ":2:13: several processes share fields of waves, Maxwell's and "
+                "solids on meshes, and this scene has none: run it in one");
 }
 END_TEST
 

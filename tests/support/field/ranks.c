@@ -29,6 +29,7 @@ typedef struct board {
   void (*work_on_boxes)(const dvi_yee_ranks *ranks, void *user);
   void *user;
   const double *sent[RANKS]; /* planes */
+  int to[RANKS];             /* whom they go to */
   pthread_mutex_t mutex;     /* of the letters */
   pthread_cond_t arrival;
   letter *letter[RANKS][RANKS];
@@ -179,20 +180,17 @@ void run_ranks(const dvi_mesh *whole, int count, const int *owner,
 
 /* ---- boxes ---- */
 
-static int pass(int way, int around, int64_t count, const double *sent, double *received,
-                void *user)
+static int pass(int to, int from, int64_t count, const double *sent, double *received, void *user)
 {
   const rank *r = user;
-  const int processes = r->board->count, from = r->rank - way;
-  const int is_inside = from >= 0 && from < processes;
   meet(r);
   r->board->sent[r->rank] = sent;
+  r->board->to[r->rank] = to;
   meet(r);
-  if (is_inside || around)
-    memcpy(received, r->board->sent[(from + processes) % processes],
-           (size_t)count * sizeof *received);
+  const int is_right = from < 0 || r->board->to[from] == r->rank;
+  if (from >= 0) memcpy(received, r->board->sent[from], (size_t)count * sizeof *received);
   meet(r);
-  return 0;
+  return !is_right;
 }
 
 static void *run_boxes(void *user)
@@ -226,13 +224,13 @@ static double wall_seconds(void)
   return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-static int pass_watched(int way, int around, int64_t count, const double *sent, double *received,
+static int pass_watched(int to, int from, int64_t count, const double *sent, double *received,
                         void *user)
 {
   watched_ranks *w = user;
   const double start = wall_seconds();
   int failed = 9;
-  if (!w->is_cut) failed = w->ranks->pass(way, around, count, sent, received, w->ranks->user);
+  if (!w->is_cut) failed = w->ranks->pass(to, from, count, sent, received, w->ranks->user);
   w->passes++;
   w->numbers += count;
   w->seconds += wall_seconds() - start;

@@ -66,14 +66,17 @@ static void choose_axis(grid *g, int l, unsigned long long *seed)
   static const dvi_yee_boundary once[] = {DVI_YEE_PEC, DVI_YEE_PMC, DVI_YEE_ABSORBING,
                                           DVI_YEE_CPML};
   dvi_yee_axis *a = &g->terms.axis[l];
-  const int is_last = l == g->terms.axes - 1, around = chosen(seed, 3), is_graded = chosen(seed, 2);
-  *a = (dvi_yee_axis){.cells = is_last ? 10 + chosen(seed, 4) : 5, .phase = 0.4 + l};
+  const int is_last = l == g->terms.axes - 1, around = chosen(seed, 6), is_graded = chosen(seed, 2);
+  *a = (dvi_yee_axis){.cells = is_last  ? 12 + chosen(seed, 4)
+                               : l == 1 ? 5 + chosen(seed, 5)
+                                        : 5,
+                      .phase = 0.4 + l};
   a->upper = a->cells;
   for (int e = 0; e < 2; e++) {
     a->end[e] = (dvi_yee_end){.layers = 1 + is_last * (1 + chosen(seed, 2)), .kappa = 2};
-    a->end[e].kind = around == 1   ? DVI_YEE_PERIODIC
-                     : around == 2 ? DVI_YEE_BLOCH
-                                   : once[chosen(seed, 4)];
+    a->end[e].kind = around == 5  ? DVI_YEE_BLOCH
+                     : around > 2 ? DVI_YEE_PERIODIC
+                                  : once[chosen(seed, 4)];
   }
   for (int i = 0; i <= a->cells; i++) g->node[l][i] = i;
   for (int i = 1; i < a->cells; i++) g->node[l][i] += 0.2 * random_number(seed);
@@ -166,7 +169,8 @@ static const dvi_march_form form_of[FORMS] = {DVI_FORM_E, DVI_FORM_B};
 struct box_trial {
   grid *g;
   int64_t size[FORMS], copies;
-  int *plane[FORMS];          /* of each cell along the axis that is divided */
+  int number;
+  int *place[FORMS];          /* [size][3] of each cell */
   double *start[FORMS];       /* with copies */
   double *form[STEPS][FORMS]; /* with copies */
   double seen[STEPS][OBSERVED], step;
@@ -195,18 +199,18 @@ static double step_of(const dvi_march *march)
   return facts.step;
 }
 
-/* Find the planes of all cells. */
-static int *planes_of(const dvi_yee_terms *terms, dvi_march_form form, int64_t size)
+/* Find the places of all cells. */
+static int *places_of(const dvi_yee_terms *terms, dvi_march_form form, int64_t size)
 {
-  int *plane = malloc((size_t)size * sizeof *plane), i[3] = {0, 0, 0};
+  int *place = malloc(3 * (size_t)size * sizeof *place), i[3] = {0, 0, 0};
   for (int c = 0; c < 3; c++)
     for (i[2] = 0; i[2] <= (terms->axes > 2 ? terms->axis[2].cells : 0); i[2]++)
       for (i[1] = 0; i[1] <= terms->axis[1].cells; i[1]++)
         for (i[0] = 0; i[0] <= terms->axis[0].cells; i[0]++) {
           const int64_t number = dvi_yee_place(terms, form, c, i);
-          if (number >= 0) plane[number] = i[terms->axes - 1];
+          if (number >= 0) memcpy(place + 3 * number, i, sizeof i);
         }
-  return plane;
+  return place;
 }
 
 static void start(dvi_march *march, double *const *values, int is_given)
@@ -222,7 +226,7 @@ static void run_whole_grid(box_trial *t)
   for (int f = 0; f < FORMS; f++) {
     t->size[f] = dvi_yee_size(&t->g->terms, form_of[f]);
     t->copies = dvi_march_size(march, form_of[f]) / t->size[f];
-    t->plane[f] = planes_of(&t->g->terms, form_of[f], t->size[f]);
+    t->place[f] = places_of(&t->g->terms, form_of[f], t->size[f]);
     t->start[f] = random_values(t->size[f] * t->copies, 7 + (unsigned)f);
   }
   start(march, t->start, t->stop % 2);
@@ -240,6 +244,7 @@ box_trial *make_box_trial(int number)
 {
   box_trial *t = calloc(1, sizeof *t);
   t->g = make_grid(1000 + (unsigned)number);
+  t->number = number;
   t->stop = number % STEPS;
   t->steps = 1 + number % 7;
   run_whole_grid(t);
@@ -249,7 +254,7 @@ box_trial *make_box_trial(int number)
 void free_box_trial(box_trial *t)
 {
   for (int f = 0; f < FORMS; f++) {
-    free(t->plane[f]), free(t->start[f]);
+    free(t->place[f]), free(t->start[f]);
     for (int s = 0; s < STEPS; s++) free(t->form[s][f]);
   }
   for (int m = 0; m < 3; m++) free(t->g->cell[m]);
@@ -260,16 +265,43 @@ void free_box_trial(box_trial *t)
 
 /* ---- several processes ---- */
 
+static int may_divide(const dvi_yee_axis *axis, int is_there, int parts)
+{
+  return parts == 1 || (is_there && axis->cells / parts > 1);
+}
+
+/* Choose one of the divisions by the number of the trial. Those along two axes come more often. */
+static void choose_division(const box_trial *t, dvi_yee_ranks *r)
+{
+  const dvi_yee_terms *terms = &t->g->terms;
+  int rows[16], count = 0;
+  for (int i = 1; i <= r->count; i++)
+    if (r->count % i == 0 && may_divide(&terms->axis[1], 1, i) &&
+        may_divide(&terms->axis[2], terms->axes > 2, r->count / i))
+      for (int often = i > 1 && i < r->count ? 3 : 1; often > 0; often--) rows[count++] = i;
+  r->parts[0] = 1;
+  r->parts[1] = rows[t->number / 2 % count];
+  r->parts[2] = r->count / r->parts[1];
+}
+
+/* Tell if a process has a place of an axis. */
+static int has_place(const dvi_yee_terms *terms, const dvi_yee_ranks *r, int axis, int i)
+{
+  const int cells = terms->axis[axis].cells, parts = r->parts[axis],
+            part = axis == 1 ? r->rank % r->parts[1] : r->rank / r->parts[1];
+  return i >= cells * part / parts && (part == parts - 1 || i < cells * (part + 1) / parts);
+}
+
 /* Give the numbers in the whole grid of the cells of a process. */
 static int64_t *numbers_of(const box_trial *t, const dvi_yee_ranks *r, int f, int64_t *count)
 {
-  const int cells = t->g->terms.axis[t->g->terms.axes - 1].cells,
-            first = cells * r->rank / r->count,
-            last = r->rank == r->count - 1 ? cells + 1 : cells * (r->rank + 1) / r->count;
   int64_t *number = malloc((size_t)t->size[f] * sizeof *number);
   *count = 0;
-  for (int64_t i = 0; i < t->size[f]; i++)
-    if (t->plane[f][i] >= first && t->plane[f][i] < last) number[(*count)++] = i;
+  for (int64_t i = 0; i < t->size[f]; i++) {
+    const int *place = t->place[f] + 3 * i;
+    if (has_place(&t->g->terms, r, 1, place[1]) && has_place(&t->g->terms, r, 2, place[2]))
+      number[(*count)++] = i;
+  }
   return number;
 }
 
@@ -310,11 +342,13 @@ int64_t run_box_share(const box_trial *t, const dvi_yee_ranks *ranks)
   dvi_march *march = NULL;
   int64_t *number[FORMS], count[FORMS], wrong = 0;
   double *own[FORMS], seen[OBSERVED] = {0};
-  terms.ranks = ranks;
+  dvi_yee_ranks divided = *ranks;
+  choose_division(t, &divided);
+  terms.ranks = &divided;
   if (dvi_yee_create(&terms, &march) != DVI_OK) return -1;
   wrong += step_of(march) != t->step;
   for (int f = 0; f < FORMS; f++) {
-    number[f] = numbers_of(t, ranks, f, &count[f]);
+    number[f] = numbers_of(t, &divided, f, &count[f]);
     own[f] = own_start(t, f, number[f], count[f]);
     wrong += dvi_march_size(march, form_of[f]) != count[f] * t->copies;
   }

@@ -28,6 +28,13 @@ typedef struct dvi_division_options {
   const char *partitioner;
 } dvi_division_options;
 
+/** What a process has received from others. */
+typedef struct dvi_division_traffic {
+  int64_t messages, bytes; /**< from one process each: values of ghosts, and places of nodes */
+  int64_t sums;            /**< of the solver, over all processes, of 568 bytes each */
+  int64_t gathers;         /**< of the solver's coarsest unknowns from all processes */
+} dvi_division_traffic;
+
 /** Facts about the share of a process. */
 typedef struct dvi_division_facts {
   int rank, ranks;                              /**< this process, and how many there are */
@@ -38,6 +45,9 @@ typedef struct dvi_division_facts {
   int messages_in[DVI_MESH_DIMENSION_MAX + 1];  /**< in as many messages */
   int neighbours;                               /**< processes that own ghosts */
   int64_t agreements; /**< so far, in which all processes have added or compared numbers */
+  dvi_division_traffic traffic;    /**< so far, as PETSc counts it in this process */
+  int64_t corrections, iterations; /**< of implicit equations so far, and in conjugate gradients */
+  dvi_division_traffic iteration;  /**< of one of these, the last one */
 } dvi_division_facts;
 
 /** What the modes of a divided field took. */
@@ -99,13 +109,20 @@ dvi_status dvi_mesh_write_divided(const dvi_mesh *mesh, const char *path);
 dvi_status dvi_mesh_read_divided(const char *path, const dvi_division_options *options,
                                  dvi_mesh **share, dvi_division **division);
 
+/** Read the whole mesh of such a file, in a process that needs no others.
+ *
+ *  @param[out] mesh  for dvi_mesh_destroy
+ *
+ *  @retval (all)  as dvi_mesh_read_divided */
+dvi_status dvi_mesh_read_whole(const char *path, dvi_mesh **mesh);
+
 /** Write the state of a march to a file of HDF5, of which each process writes a block of each
  *  array. No process holds the whole state, and any number of processes goes on from the file with
  *  the same bits. All processes of the division call it.
  *
  *  An old file is replaced only when all is written. If one process fails, all of them do.
  *
- *  @param march  of a field by leapfrog or midpoint, or of an elastic solid
+ *  @param march  of a field on a mesh by leapfrog, midpoint, imex or galerkin, or of a solid
  *  @param division  that of the march's mesh. NULL for a whole mesh in one process, which needs
  *                   neither MPI nor PETSc to be started
  *  @retval DVI_UNSUPPORTED   other marches

@@ -65,8 +65,7 @@ static dvi_status read_counts(const dvi__slabs *file, dvi__mesh_head *head)
 
 dvi_status dvi__read_head(const dvi__slabs *file, dvi__mesh_head *head)
 {
-  char path[DVI__PART_PATH];
-  *head = (dvi__mesh_head){.parts = 1};
+  *head = (dvi__mesh_head){.parts = 0};
   DVI_TRY(read_kind(file, head));
   DVI_TRY(read_counts(file, head));
   DVI_TRY(dvi__slabs_read(file,
@@ -76,9 +75,8 @@ dvi_status dvi__read_head(const dvi__slabs *file, dvi__mesh_head *head)
                           &(dvi__slab){.name = "period", .type = DVI__DOUBLE, .rows = head->space},
                           head->period));
   head->is_oriented = dvi__slabs_have(file, "orientation");
-  while (dvi__slabs_have(file, "parts") &&
-         dvi__slabs_have(file, dvi__part_path(path, head->parts, "")))
-    head->parts++;
+  DVI_TRY(dvi__slabs_members(file, "parts", &head->parts));
+  head->parts++;
   return DVI_OK;
 }
 

@@ -236,3 +236,14 @@ dvi_status dvi_mesh_read_divided(const char *path, const dvi_division_options *o
   *division = made;
   return status;
 }
+
+dvi_status dvi_mesh_read_whole(const char *path, dvi_mesh **mesh)
+{
+  const dvi_division_options alone = {
+      .size = sizeof alone, .comm = MPI_COMM_SELF, .partitioner = "blocks"};
+  dvi_division *division = NULL;
+  DVI_TRY(dvi_mesh_read_divided(path, &alone, mesh, &division));
+  dvi__share_end(*mesh);
+  dvi_division_destroy(&division);
+  return DVI_OK;
+}

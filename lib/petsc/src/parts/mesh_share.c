@@ -246,6 +246,9 @@ static dvi_status read_part(const dvi__mesh_reader *r, dvi_mesh *share, int p,
   dvi__given_part part = {.name = name};
   dvi_status status = dvi__slabs_read_text(r->file, dvi__part_path(path, p, "/name"), sizeof name,
                                            name);
+  for (int before = 0; before < p && status == DVI_OK; before++)
+    if (strcmp(name, dvi_mesh_part_name(share, before)) == 0)
+      status = dvi__slabs_refuse(r->file, "parts %d and %d both are \"%s\"", before, p, name);
   if (status == DVI_OK && (strcmp(name, "boundary") == 0) != (p == 1))
     status = dvi__slabs_refuse(r->file, "part %d is not \"boundary\", as part 1 is alone", p);
   if (status == DVI_OK) status = read_degree(r, p, &part);

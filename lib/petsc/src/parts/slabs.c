@@ -135,11 +135,15 @@ static dvi_status try_beside(const dvi__slabs *file)
                    strerror(errno));
 }
 
+/* Headers of this version have checksums. The same contents are the same bytes at any time. */
 static dvi_status create(dvi__slabs *file)
 {
-  const hid_t access = access_by(file->world);
-  if (access >= 0) file->id = H5Fcreate(file->beside, H5F_ACC_TRUNC, H5P_DEFAULT, access);
+  const hid_t access = access_by(file->world), how = H5Pcreate(H5P_FILE_CREATE);
+  if (access >= 0 && how >= 0 && H5Pset_obj_track_times(how, 0) >= 0 &&
+      H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110) >= 0)
+    file->id = H5Fcreate(file->beside, H5F_ACC_TRUNC, how, access);
   if (access >= 0) (void)H5Pclose(access);
+  if (how >= 0) (void)H5Pclose(how);
   return file->id >= 0 ? DVI_OK
                        : dvi__fail(DVI_IO_ERROR, "cannot write a file beside %.300s: HDF5 failed",
                                    file->path);
@@ -221,6 +225,18 @@ int dvi__slabs_have(const dvi__slabs *file, const char *name)
   return H5Lexists(file->id, name, H5P_DEFAULT) > 0;
 }
 
+dvi_status dvi__slabs_members(const dvi__slabs *file, const char *name, int *members)
+{
+  H5G_info_t facts;
+  const hid_t group = dvi__slabs_have(file, name) ? H5Gopen2(file->id, name, H5P_DEFAULT)
+                                                  : H5I_INVALID_HID;
+  const int known = group >= 0 && H5Gget_info(group, &facts) >= 0 && facts.nlinks < INT_MAX;
+  if (group >= 0) (void)H5Gclose(group);
+  if (!known) return dvi__slabs_refuse(file, "it has no group \"%s\", or that is damaged", name);
+  *members = (int)facts.nlinks;
+  return DVI_OK;
+}
+
 /* Give the axes of an open dataset. Returns whether they are one or two. */
 static int shape_of(hid_t set, int64_t *rows, int *width)
 {
@@ -242,7 +258,8 @@ dvi_status dvi__slabs_shape(const dvi__slabs *file, const char *name, int64_t *r
   const int known = set >= 0 && shape_of(set, rows, width);
   if (set >= 0) (void)H5Dclose(set);
   return known ? DVI_OK
-               : dvi__slabs_refuse(file, "it has no dataset \"%s\" of one or two axes", name);
+               : dvi__slabs_refuse(
+                     file, "it has no dataset \"%s\" of one or two axes, or that is damaged", name);
 }
 
 /* Numbers of another class would be converted without a word. */
@@ -284,7 +301,8 @@ dvi_status dvi__slabs_read(const dvi__slabs *file, const dvi__slab *slab, void *
   const int is_read = set >= 0 && has_class(set, slab->type) && read_rows(set, slab, numbers);
   if (set >= 0) (void)H5Dclose(set);
   return is_read ? DVI_OK
-                 : dvi__slabs_refuse(file, "\"%s\" has other numbers, or is cut short", slab->name);
+                 : dvi__slabs_refuse(file, "\"%s\" has other numbers, is damaged, or is cut short",
+                                     slab->name);
 }
 
 dvi_status dvi__slabs_read_text(const dvi__slabs *file, const char *name, size_t size, char *text)
@@ -301,5 +319,6 @@ dvi_status dvi__slabs_read_text(const dvi__slabs *file, const char *name, size_t
   if (space >= 0) (void)H5Sclose(space);
   if (type >= 0) (void)H5Tclose(type);
   if (set >= 0) (void)H5Dclose(set);
-  return is_read ? DVI_OK : dvi__slabs_refuse(file, "it has no text \"%s\"", name);
+  return is_read ? DVI_OK
+                 : dvi__slabs_refuse(file, "it has no text \"%s\", or that is damaged", name);
 }

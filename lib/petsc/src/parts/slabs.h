@@ -32,6 +32,9 @@ dvi_status dvi__slabs_end(dvi__slabs **file, int keep);
 /* Tell whether the file has a dataset or a group. A/B is looked for if there is an A. */
 int dvi__slabs_have(const dvi__slabs *file, const char *name);
 
+/* Give the number of members of a group. DVI_BAD_FILE if it is not there. */
+dvi_status dvi__slabs_members(const dvi__slabs *file, const char *name, int *members);
+
 /* Give the number of rows of a dataset, and their width, 0 if it has one axis. DVI_BAD_FILE if it
  * has more, or is not there. */
 dvi_status dvi__slabs_shape(const dvi__slabs *file, const char *name, int64_t *rows, int *width);
@@ -43,8 +46,8 @@ dvi_status dvi__slabs_read(const dvi__slabs *file, const dvi__slab *slab, void *
 dvi_status dvi__slabs_read_text(const dvi__slabs *file, const char *name, size_t size, char *text);
 
 /* Write a dataset of `total` rows, of which each process gives its own, maybe none. Or write a
- * whole one, a text or a group. All processes make these calls, and agree on failures
- * afterwards. */
+ * text, a group or, in a process alone, a whole dataset with checksums. All processes make these
+ * calls, and agree on failures afterwards. */
 dvi_status dvi__slabs_write_rows(const dvi__slabs *file, const dvi__slab *slab, int64_t total,
                                  const void *numbers);
 dvi_status dvi__slabs_write(const dvi__slabs *file, const dvi__slab *slab, const void *numbers);

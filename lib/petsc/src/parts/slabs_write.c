@@ -4,6 +4,9 @@
 #include "core/status.h"
 #include "slabs_struct.h"
 
+/* Numbers of at most so many bytes stand in the header of their dataset, and others in chunks. */
+enum { HEADER_MOST = 1024, CHUNK_BYTES = 1 << 19 };
+
 static hid_t stored_type(dvi__number_type type)
 {
   if (type == DVI__INT8) return H5T_STD_I8LE;
@@ -17,36 +20,55 @@ static dvi_status check_written(const dvi__slabs *file, int is_written)
                     : dvi__fail(DVI_IO_ERROR, "cannot write %.300s: HDF5 failed", file->path);
 }
 
-/* Make the list of how a dataset is created, for H5Pclose. Each process writes to room that is
- * there, and the same contents are the same bytes at any time. */
-static hid_t creation(void)
+/* Make the list of how an object is created, for H5Pclose. The same contents are the same bytes at
+ * any time. */
+static hid_t creation(hid_t kind)
 {
-  const hid_t list = H5Pcreate(H5P_DATASET_CREATE);
-  if (list < 0) return list;
-  (void)H5Pset_alloc_time(list, H5D_ALLOC_TIME_EARLY);
-  (void)H5Pset_fill_time(list, H5D_FILL_TIME_NEVER);
-  (void)H5Pset_obj_track_times(list, 0);
-  return list;
+  const hid_t how = H5Pcreate(kind);
+  if (how >= 0) (void)H5Pset_obj_track_times(how, 0);
+  return how;
 }
 
-/* A dataset that is written: the type of its numbers in the file and in memory, how many there are,
- * and what this process writes of them. `in_memory` and `in_file` may be H5S_ALL. */
+/* Let each process write to room that is there. */
+static int choose_rows(hid_t how)
+{
+  return H5Pset_alloc_time(how, H5D_ALLOC_TIME_EARLY) >= 0 &&
+         H5Pset_fill_time(how, H5D_FILL_TIME_NEVER) >= 0;
+}
+
+/* Let a dataset have checksums: of its header, where it is small, or of chunks of whole rows. */
+static int choose_layout(hid_t how, hid_t type, hid_t space)
+{
+  hsize_t extent[2] = {1, 1};
+  const int axes = H5Sget_simple_extent_ndims(space);
+  if (axes > 0) (void)H5Sget_simple_extent_dims(space, extent, NULL);
+  const hsize_t row = extent[1] * H5Tget_size(type), most = CHUNK_BYTES / row;
+  if (extent[0] * row <= HEADER_MOST) return H5Pset_layout(how, H5D_COMPACT) >= 0;
+  if (extent[0] > most) extent[0] = most > 0 ? most : 1;
+  return H5Pset_chunk(how, axes, extent) >= 0 && H5Pset_fletcher32(how) >= 0;
+}
+
+/* A dataset that is written: the types of its numbers in the file and in memory, its room, and what
+ * this process writes of it. `in_memory` and `in_file` may be H5S_ALL. */
 typedef struct written_set {
   hid_t stored, type, space, in_memory, in_file;
-  int is_written; /* by this process */
+  int is_whole;   /* by each process */
+  int is_written; /* by this one */
 } written_set;
 
 /* Create a dataset, and write it. */
 static int write_set(hid_t file, const char *name, const written_set *w, const void *numbers)
 {
-  const hid_t list = creation(), set = w->space >= 0 && list >= 0
-                                           ? H5Dcreate2(file, name, w->stored, w->space,
-                                                        H5P_DEFAULT, list, H5P_DEFAULT)
-                                           : H5I_INVALID_HID;
+  const hid_t how = creation(H5P_DATASET_CREATE);
+  const int is_chosen = how >= 0 && w->space >= 0 &&
+                        (w->is_whole ? choose_layout(how, w->stored, w->space) : choose_rows(how));
+  const hid_t set = is_chosen
+                        ? H5Dcreate2(file, name, w->stored, w->space, H5P_DEFAULT, how, H5P_DEFAULT)
+                        : H5I_INVALID_HID;
   int is_good = set >= 0 && (!w->is_written || H5Dwrite(set, w->type, w->in_memory, w->in_file,
                                                         H5P_DEFAULT, numbers) >= 0);
   if (set >= 0) is_good = H5Dclose(set) >= 0 && is_good;
-  if (list >= 0) (void)H5Pclose(list);
+  if (how >= 0) (void)H5Pclose(how);
   return is_good;
 }
 
@@ -75,9 +97,20 @@ dvi_status dvi__slabs_write_rows(const dvi__slabs *file, const dvi__slab *slab, 
 
 dvi_status dvi__slabs_write(const dvi__slabs *file, const dvi__slab *slab, const void *numbers)
 {
-  return dvi__slabs_write_rows(file, slab, slab->rows, numbers);
+  const hsize_t extent[2] = {(hsize_t)slab->rows, (hsize_t)slab->width};
+  const written_set w = {.stored = stored_type(slab->type),
+                         .type = dvi__slabs_type(slab->type),
+                         .space = H5Screate_simple(slab->width > 0 ? 2 : 1, extent, NULL),
+                         .in_memory = H5S_ALL,
+                         .in_file = H5S_ALL,
+                         .is_whole = 1,
+                         .is_written = 1};
+  const int is_good = write_set(file->id, slab->name, &w, numbers);
+  if (w.space >= 0) (void)H5Sclose(w.space);
+  return check_written(file, is_good);
 }
 
+/* Small datasets stand in headers, which all processes write. */
 dvi_status dvi__slabs_write_text(const dvi__slabs *file, const char *name, const char *text)
 {
   const hid_t type = H5Tcopy(H5T_C_S1), space = H5Screate(H5S_SCALAR);
@@ -86,7 +119,8 @@ dvi_status dvi__slabs_write_text(const dvi__slabs *file, const char *name, const
                          .space = space,
                          .in_memory = H5S_ALL,
                          .in_file = H5S_ALL,
-                         .is_written = file->world == NULL || file->world->rank == 0};
+                         .is_whole = 1,
+                         .is_written = 1};
   const int is_good = type >= 0 && H5Tset_size(type, strlen(text) + 1) >= 0 &&
                       write_set(file->id, name, &w, text);
   if (type >= 0) (void)H5Tclose(type);
@@ -96,6 +130,9 @@ dvi_status dvi__slabs_write_text(const dvi__slabs *file, const char *name, const
 
 dvi_status dvi__slabs_write_group(const dvi__slabs *file, const char *name)
 {
-  const hid_t group = H5Gcreate2(file->id, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  const hid_t how = creation(H5P_GROUP_CREATE),
+              group = how >= 0 ? H5Gcreate2(file->id, name, H5P_DEFAULT, how, H5P_DEFAULT)
+                               : H5I_INVALID_HID;
+  if (how >= 0) (void)H5Pclose(how);
   return check_written(file, group >= 0 && H5Gclose(group) >= 0);
 }

@@ -89,7 +89,7 @@ static dvi_status put(void *of, const dvi__part_rows *rows, const double *value)
   dvi__slab slab = {
       .name = array_name(name, rows->array), .type = DVI__DOUBLE, .rows = rows->total};
   DVI_TRY(check_rows(f, rows));
-  if (f->world == NULL) return dvi__slabs_write(f->file, &slab, value);
+  if (f->world == NULL) return dvi__slabs_write_rows(f->file, &slab, rows->total, value);
   const dvi__block block = dvi__block_of(f->world, rows->total);
   slab.first = block.first;
   slab.rows = block.last - block.first;

@@ -124,13 +124,12 @@ PetscErrorCode dvi__multigrid_destroy(dvi__multigrid **made)
 
 /* ---- a cycle ---- */
 
-/* Chebyshev's polynomial with the diagonal, without a look at norms. */
-static PetscErrorCode set_smoother(const level *l, int products, double least, KSP ksp)
+PetscErrorCode dvi__set_smoother(Mat shown, PetscReal bound, int products, KSP ksp)
 {
   PC pc;
   PetscCall(KSPSetType(ksp, KSPCHEBYSHEV));
-  PetscCall(KSPChebyshevSetEigenvalues(ksp, l->bound, least * l->bound));
-  PetscCall(KSPSetOperators(ksp, l->shown, l->shown));
+  PetscCall(KSPChebyshevSetEigenvalues(ksp, bound, smoothest * bound));
+  PetscCall(KSPSetOperators(ksp, shown, shown));
   PetscCall(KSPSetNormType(ksp, KSP_NORM_NONE));
   PetscCall(KSPSetConvergenceTest(ksp, KSPConvergedSkip, NULL, NULL));
   PetscCall(KSPSetTolerances(ksp, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT, products));
@@ -155,7 +154,7 @@ static PetscErrorCode set_coarsest(dvi__multigrid *m, KSP ksp)
 {
   const level *l = m->level + m->levels - 1;
   PC pc;
-  if (l->unknowns > DVI__COARSEST) return set_smoother(l, LAST, smoothest, ksp);
+  if (l->unknowns > DVI__COARSEST) return dvi__set_smoother(l->shown, l->bound, LAST, ksp);
   PetscCall(KSPSetType(ksp, KSPPREONLY));
   PetscCall(KSPSetOperators(ksp, l->shown, l->shown));
   PetscCall(KSPGetPC(ksp, &pc));
@@ -178,7 +177,7 @@ PetscErrorCode dvi__multigrid_use(dvi__multigrid *m, PC pc)
     PetscCall(PCMGSetInterpolation(pc, here, l->interpolation));
     PetscCall(PCMGSetRestriction(pc, here, l->interpolation));
     PetscCall(PCMGGetSmoother(pc, here, &ksp));
-    PetscCall(set_smoother(l, SMOOTHINGS, smoothest, ksp));
+    PetscCall(dvi__set_smoother(l->shown, l->bound, SMOOTHINGS, ksp));
   }
   return 0;
 }

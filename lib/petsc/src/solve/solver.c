@@ -6,25 +6,31 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "edges.h"
 #include "multigrid.h"
 #include "owners.h"
+#include "pair.h"
+#include "traffic.h"
 #include "vector.h"
 
 enum { CORRECTIONS = 25, ITERATIONS = 500 };
 
-/* What conjugate gradients leave of a correction, in the norm of its energy, and of the first one.
- * Corrections end where the next one would be a rounding, or where they do not shrink any more, but
- * are this small a part of the unknowns. */
+/* What conjugate gradients, or minimal residuals, leave of a correction, in the norm of its energy,
+ * and of the first one. Corrections end where the next one would be a rounding, or where they do
+ * not shrink any more, but are this small a part of the unknowns. */
 static const double part_left = 1e-9, roundoff = 1e-17, settled = 1e-10;
 
 typedef struct solver {
   dvi__elliptic equations;
-  const dvi__world *world;
+  dvi__world *world;
   PetscInt *place; /* [unknowns] columns of `A` */
   dvi__operator A;
-  dvi__multigrid *multigrid;
-  double *x, *r;         /* [unknowns] */
-  PetscScalar *diagonal; /* [own] of the Jacobian beside A */
+  dvi__multigrid *multigrid; /* of vertices */
+  dvi__edges *edges;         /* or of edges */
+  dvi__pair pair;            /* of equations of pairs */
+  int numbers;               /* of each unknown, 1 or 2 */
+  double *x, *r;             /* [numbers*unknowns] */
+  PetscScalar *diagonal;     /* [numbers*own] of the Jacobian beside A */
   SNES snes;
   Mat jacobian;
   Vec solution, residual;
@@ -32,6 +38,7 @@ typedef struct solver {
   double first, start; /* energy norms of the first residual, and of the last correction's */
   double size;         /* norm of the unknowns */
   double last, before; /* norms of corrections */
+  dvi__traffic mark;   /* before an iteration */
   int64_t iterations;
   dvi_status status; /* of the functions */
 } solver;
@@ -43,20 +50,29 @@ static PetscErrorCode spread(solver *s, Vec x)
 {
   const PetscScalar *own;
   PetscCall(VecGetArrayRead(x, &own));
-  PetscCall(PetscArraycpy(s->A.x, own, (size_t)s->A.own));
-  PetscCall(VecRestoreArrayRead(x, &own));
-  PetscCall(dvi__operator_refresh(&s->A, MPIU_SCALAR, s->A.x));
-  for (int64_t i = 0; i < s->equations.unknowns; i++) s->x[i] = s->A.x[s->place[i]];
-  return 0;
+  for (int k = 0; k < s->numbers; k++) {
+    double *const here = s->x + k * s->equations.unknowns;
+    PetscCall(PetscArraycpy(s->A.x, own + k * s->A.own, (size_t)s->A.own));
+    PetscCall(dvi__operator_refresh(&s->A, MPIU_SCALAR, s->A.x));
+    for (int64_t i = 0; i < s->equations.unknowns; i++) here[i] = s->A.x[s->place[i]];
+  }
+  return VecRestoreArrayRead(x, &own);
 }
 
-/* Set own numbers to those of an array [unknowns]. */
+/* Set own numbers [numbers*own] to those of an array [numbers*unknowns]. */
+static void copy_own(const solver *s, const double *values, PetscScalar *own)
+{
+  for (int k = 0; k < s->numbers; k++)
+    for (int64_t i = 0; i < s->equations.unknowns; i++)
+      if (s->place[i] < s->A.own)
+        own[k * s->A.own + s->place[i]] = values[k * s->equations.unknowns + i];
+}
+
 static PetscErrorCode take_own(const solver *s, const double *values, Vec x)
 {
   PetscScalar *own;
   PetscCall(VecGetArray(x, &own));
-  for (int64_t i = 0; i < s->equations.unknowns; i++)
-    if (s->place[i] < s->A.own) own[s->place[i]] = values[i];
+  copy_own(s, values, own);
   return VecRestoreArray(x, &own);
 }
 
@@ -82,8 +98,15 @@ static PetscErrorCode linearize(SNES snes, Vec x, Mat jacobian, Mat of_multigrid
   PetscCall(spread(s, x));
   s->status = dvi__world_agree(s->world, e->diagonal(e->of, s->x, s->r));
   if (s->status != DVI_OK) return SNESSetJacobianDomainError(snes);
-  for (int64_t i = 0; i < e->unknowns; i++)
-    if (s->place[i] < s->A.own) s->diagonal[s->place[i]] = s->r[i];
+  copy_own(s, s->r, s->diagonal);
+  return 0;
+}
+
+static PetscErrorCode multiply_one(const solver *s, const PetscScalar *in, PetscScalar *out)
+{
+  PetscCall(dvi__operator_multiply(&s->A, in, out));
+  for (PetscInt i = 0; i < s->A.own && s->equations.diagonal != NULL; i++)
+    out[i] += s->diagonal[i] * in[i];
   return 0;
 }
 
@@ -95,9 +118,10 @@ static PetscErrorCode multiply(Mat jacobian, Vec x, Vec y)
   PetscCall(MatShellGetContext(jacobian, &s));
   PetscCall(VecGetArrayRead(x, &in));
   PetscCall(VecGetArray(y, &out));
-  PetscCall(dvi__operator_multiply(&s->A, in, out));
-  for (PetscInt i = 0; i < s->A.own && s->equations.diagonal != NULL; i++)
-    out[i] += s->diagonal[i] * in[i];
+  if (s->numbers == 1)
+    PetscCall(multiply_one(s, in, out));
+  else
+    PetscCall(dvi__pair_multiply(&s->pair, s->diagonal, in, out));
   PetscCall(VecRestoreArray(y, &out));
   return VecRestoreArrayRead(x, &in);
 }
@@ -106,8 +130,9 @@ static PetscErrorCode create_vectors(Mat jacobian, Vec *right, Vec *left)
 {
   solver *s;
   PetscCall(MatShellGetContext(jacobian, &s));
-  if (right != NULL) PetscCall(dvi__vector_create(s->A.comm, s->A.own, right));
-  return left != NULL ? dvi__vector_create(s->A.comm, s->A.own, left) : 0;
+  const PetscInt own = s->numbers * s->A.own;
+  if (right != NULL) PetscCall(dvi__vector_create(s->A.comm, own, right));
+  return left != NULL ? dvi__vector_create(s->A.comm, own, left) : 0;
 }
 
 /* Subtract the mean of each component that the kernel has. */
@@ -133,11 +158,21 @@ static PetscErrorCode subtract_means(MatNullSpace kernel, Vec x, void *user)
 
 /* ---- ends ---- */
 
+/* Note what an iteration of conjugate gradients has received. */
+static void note_iteration(solver *s, PetscInt iteration)
+{
+  const dvi__traffic now = dvi__traffic_so_far();
+  if (iteration > 0) s->world->iteration = dvi__traffic_since(now, s->mark);
+  s->mark = now;
+}
+
 static PetscErrorCode end_gradients(KSP ksp, PetscInt iteration, PetscReal norm,
                                     KSPConvergedReason *reason, void *user)
 {
   solver *s = user;
+  note_iteration(s, iteration);
   *reason = KSP_CONVERGED_ITERATING;
+  norm *= s->pair.scale;
   if (iteration == 0) s->start = norm;
   if (s->first == 0) s->first = norm;
   if (!isfinite(norm))
@@ -178,7 +213,7 @@ static PetscErrorCode end_newton(SNES snes, PetscInt iteration, PetscReal size,
 
 static PetscErrorCode make_jacobian(solver *s)
 {
-  const PetscInt own = s->A.own;
+  const PetscInt own = s->numbers * s->A.own;
   PetscCall(MatCreateShell(s->A.comm, own, own, PETSC_DETERMINE, PETSC_DETERMINE, s, &s->jacobian));
   PetscCall(MatShellSetOperation(s->jacobian, MATOP_MULT, (void (*)(void))multiply));
   PetscCall(MatShellSetOperation(s->jacobian, MATOP_CREATE_VECS, (void (*)(void))create_vectors));
@@ -207,13 +242,14 @@ static PetscErrorCode make_gradients(solver *s)
   KSP ksp;
   PC pc;
   PetscCall(SNESGetKSP(s->snes, &ksp));
-  PetscCall(KSPSetType(ksp, KSPCG));
-  PetscCall(KSPSetNormType(ksp, KSP_NORM_NATURAL));
+  PetscCall(KSPSetType(ksp, s->numbers == 1 ? KSPCG : KSPMINRES));
+  PetscCall(KSPSetNormType(ksp, s->numbers == 1 ? KSP_NORM_NATURAL : KSP_NORM_PRECONDITIONED));
   PetscCall(KSPSetConvergenceTest(ksp, end_gradients, s, NULL));
   PetscCall(KSPSetTolerances(ksp, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT, ITERATIONS));
   PetscCall(KSPSetReusePreconditioner(ksp, PETSC_TRUE));
   PetscCall(KSPGetPC(ksp, &pc));
-  return dvi__multigrid_use(s->multigrid, pc);
+  if (s->numbers == 2) return dvi__pair_use(&s->pair, ksp);
+  return s->edges != NULL ? dvi__edges_use(s->edges, pc) : dvi__multigrid_use(s->multigrid, pc);
 }
 
 static PetscErrorCode make_newton(solver *s)
@@ -236,13 +272,17 @@ static PetscErrorCode make(solver *s, const dvi__elliptic *e)
   const dvi__unknowns unknowns = {
       .share = e->share, .degree = e->degree, .count = e->unknowns, .cell = e->cell};
   PetscInt own;
-  const size_t count = (size_t)e->unknowns;
-  PetscCall(PetscMalloc3(count, &s->place, count, &s->x, count, &s->r));
+  const size_t count = (size_t)e->unknowns, numbers = (size_t)s->numbers;
+  PetscCall(PetscMalloc3(count, &s->place, numbers * count, &s->x, numbers * count, &s->r));
   PetscCall(dvi__place_unknowns(s->world->comm, &unknowns, s->place, &own));
   PetscCall(dvi__operator_of_share(s->world->comm, &unknowns, &e->A, &s->A));
-  PetscCall(PetscCalloc1((size_t)own, &s->diagonal));
-  PetscCall(dvi__multigrid_create(&s->A, &s->multigrid));
-  PetscCall(dvi__vector_create(s->A.comm, own, &s->solution));
+  PetscCall(PetscCalloc1(numbers * (size_t)own, &s->diagonal));
+  if (e->degree == 0)
+    PetscCall(dvi__multigrid_create(&s->A, &s->multigrid));
+  else
+    PetscCall(dvi__edges_create(&unknowns, &s->A, &s->edges));
+  if (s->numbers == 2) PetscCall(dvi__pair_create(&s->A, s->multigrid, e, s->place, &s->pair));
+  PetscCall(dvi__vector_create(s->A.comm, s->numbers * own, &s->solution));
   PetscCall(VecDuplicate(s->solution, &s->residual));
   PetscCall(make_jacobian(s));
   PetscCall(make_kernel(s));
@@ -254,7 +294,9 @@ static void destroy(void *of)
   solver *s = of;
   if (s == NULL) return;
   (void)SNESDestroy(&s->snes);
+  (void)dvi__pair_clear(&s->pair);
   (void)dvi__multigrid_destroy(&s->multigrid);
+  (void)dvi__edges_destroy(&s->edges);
   (void)MatDestroy(&s->jacobian);
   (void)VecDestroy(&s->solution);
   (void)VecDestroy(&s->residual);
@@ -274,6 +316,8 @@ static dvi_status create(const dvi__elliptic *equations, void *user, void **made
   if (status == DVI_OK) {
     s->equations = *equations;
     s->world = user;
+    s->numbers = equations->mass != NULL ? 2 : 1;
+    s->pair.scale = 1;
     (void)PetscPushErrorHandler(PetscReturnErrorHandler, NULL);
     status = dvi__world_agree(user, dvi__check_petsc(make(s, equations)));
     (void)PetscPopErrorHandler();
@@ -286,11 +330,13 @@ static dvi_status create(const dvi__elliptic *equations, void *user, void **made
 
 /* ---- solve ---- */
 
-static const char *explain(SNESConvergedReason reason)
+static const char *explain(const solver *s, SNESConvergedReason reason)
 {
   switch (reason) {
   case SNES_DIVERGED_LINEAR_SOLVE:
-    return "conjugate gradients did not end, or their matrix is not positive definite";
+    return s->numbers == 1
+               ? "conjugate gradients did not end, or their matrix is not positive definite"
+               : "minimal residuals did not end";
   case SNES_DIVERGED_FNORM_NAN: return "a number is not finite";
   default: return "corrections did not become small";
   }
@@ -309,15 +355,17 @@ static PetscErrorCode run(solver *s, double *x, dvi__elliptic_report *report, in
   PetscCall(SNESGetIterationNumber(s->snes, &corrections));
   PetscCall(SNESGetLinearSolveIterations(s->snes, &iterations));
   PetscCall(VecNorm(s->residual, NORM_2, &residual));
+  s->world->corrections += corrections;
+  s->world->iterations += iterations;
   *is_solved = reason > 0;
   *report = (dvi__elliptic_report){.corrections = (int)corrections,
                                    .iterations = iterations,
                                    .residual = residual,
                                    .correction = s->size > 0 ? s->last / s->size : 0,
-                                   .why = reason > 0 ? NULL : explain(reason)};
+                                   .why = reason > 0 ? NULL : explain(s, reason)};
   if (reason <= 0) return 0;
   PetscCall(spread(s, s->solution));
-  return PetscArraycpy(x, s->x, (size_t)s->equations.unknowns);
+  return PetscArraycpy(x, s->x, (size_t)(s->numbers * s->equations.unknowns));
 }
 
 static dvi_status solve(void *of, double *x, dvi__elliptic_report *report)

@@ -288,7 +288,8 @@ dvi_status dvi_mesh_cut(const dvi_mesh *mesh, const int *owner, const dvi_ranks 
     return dvi__fail(DVI_BAD_ARGUMENT, "mesh: a mesh, owners and processes are needed");
   *share = NULL;
   DVI_TRY(check_ranks(ranks));
-  DVI_TRY(dvi__refuse_share(mesh, "mesh: a cut"));
+  if (mesh->share == NULL || mesh->share->ranks.count > 1) /* one process has the whole mesh */
+    DVI_TRY(dvi__refuse_share(mesh, "mesh: a cut"));
   cut c = {.whole = mesh, .owner = owner, .ranks = *ranks};
   const dvi_status status = dvi__agree_among(ranks, make(&c, share));
   clear(&c);

@@ -35,6 +35,12 @@ dvi_status dvi__share_part(dvi_mesh *mesh, int p, const dvi__given_part *part, i
   return dvi__part_take(mesh, p, &whole, k, marked);
 }
 
+void dvi__share_end(dvi_mesh *mesh)
+{
+  dvi__share_destroy(mesh->share);
+  mesh->share = NULL;
+}
+
 void dvi__mesh_axes(const dvi_mesh *mesh, const double **metric, const double **period)
 {
   *metric = mesh->metric;

@@ -28,6 +28,9 @@ dvi_status dvi__share_given(dvi_mesh *mesh, const dvi__given_share *given);
 dvi_status dvi__share_part(dvi_mesh *mesh, int p, const dvi__given_part *part, int k,
                            const char *marked);
 
+/* Make the share of a process that is alone, and so has all cells, a whole mesh. */
+void dvi__share_end(dvi_mesh *mesh);
+
 /* Give the metric and the periods [space] of a mesh. */
 void dvi__mesh_axes(const dvi_mesh *mesh, const double **metric, const double **period);
 

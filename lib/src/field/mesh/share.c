@@ -168,8 +168,13 @@ dvi_status dvi__check_owned(const dvi_mesh *mesh, int k, int64_t count, const in
 
 dvi_status dvi__refuse_share(const dvi_mesh *mesh, const char *what)
 {
+  return dvi__refuse_share_but(mesh, what, "");
+}
+
+dvi_status dvi__refuse_share_but(const dvi_mesh *mesh, const char *what, const char *remedy)
+{
   if (mesh->share == NULL) return DVI_OK;
-  return dvi__fail(DVI_UNSUPPORTED,
-                   "%s needs a whole mesh, and this is one of %d shares (dvi_mesh_cut)", what,
-                   mesh->share->ranks.count);
+  return dvi__fail(DVI_UNSUPPORTED, "%s needs a whole mesh, which %d processes share: take %s%s",
+                   what, mesh->share->ranks.count, remedy,
+                   remedy[0] != '\0' ? ", or one process" : "one process");
 }

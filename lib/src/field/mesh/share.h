@@ -93,7 +93,9 @@ dvi_status dvi__locate_first(const dvi_mesh *mesh, const double *at, double *pla
 /* Refuse k-cells of other processes. */
 dvi_status dvi__check_owned(const dvi_mesh *mesh, int k, int64_t count, const int *cell);
 
-/* Refuse a share for what needs a whole mesh, such as "march: avi". */
+/* Refuse a share for what needs a whole mesh, such as "march: avi". Beside one process there may be
+ * another remedy, such as "leapfrog". */
 dvi_status dvi__refuse_share(const dvi_mesh *mesh, const char *what);
+dvi_status dvi__refuse_share_but(const dvi_mesh *mesh, const char *what, const char *remedy);
 
 #endif

@@ -4,10 +4,10 @@
 
 #include "core/status.h"
 #include "field/avi/march.h"
+#include "field/implicit/methods.h"
 #include "field/mesh/share.h"
 #include "field/step/bound.h"
 #include "field/step/leapfrog.h"
-#include "field/step/midpoint.h"
 #include "field/tents/tents.h"
 
 /* A method, and whether its name fits a mesh. */
@@ -26,11 +26,13 @@ static const method methods[] = {
     {"yee", 1, dvi__leapfrog_create, NULL},
     {"avi", 0, dvi__avi_march_create, dvi__avi_march_stability},
     {"tents", 0, dvi__tents_march, dvi__tents_march_stability},
-    /* Whole meshes have it by the integrators of systems. */
+    /* Whole meshes have the rest by the integrators of systems. */
     {"midpoint", 0, dvi__midpoint_create, NULL},
+    {"imex", 0, dvi__imex_create, NULL},
+    {"galerkin", 0, dvi__galerkin_create, NULL},
 };
 
-enum { ALL = sizeof methods / sizeof *methods, METHODS = ALL - 1 };
+enum { ALL = sizeof methods / sizeof *methods, METHODS = 5 };
 
 const char *dvi_march_method_name(int i)
 {
@@ -41,10 +43,12 @@ const char *dvi_march_method_name(int i)
 
 static dvi_status check_field(const dvi_field *field, const method *found)
 {
-  if (field->potential.density != NULL && found->create != dvi__midpoint_create)
+  if (field->potential.density != NULL && found < methods + METHODS)
     return dvi__fail(DVI_UNSUPPORTED,
-                     "march: the field has a potential, which marches do not take; verlet and the "
-                     "other methods of dvi_field_system do");
+                     "march: the field has a potential, which %s does not take; %s", found->name,
+                     field->mesh->share != NULL ? "midpoint does"
+                                                : "verlet and the other methods of "
+                                                  "dvi_field_system do");
   return DVI_OK;
 }
 
@@ -58,10 +62,11 @@ static dvi_status find(const char *text, const method **found, const char **rest
     if (strlen(methods[i].name) == length && strncmp(methods[i].name, text, length) == 0)
       return DVI_OK;
   }
-  return dvi__fail(DVI_BAD_OPTION,
-                   "march: there is no method \"%.*s\"; there are leapfrog (also called yee and "
-                   "bossavit-kettunen), avi, tents, and midpoint for waves on shares",
-                   (int)length, text);
+  return dvi__fail(
+      DVI_BAD_OPTION,
+      "march: there is no method \"%.*s\"; there are leapfrog (also called yee and "
+      "bossavit-kettunen), avi, tents, and midpoint, imex and galerkin for waves on shares",
+      (int)length, text);
 }
 
 /* ---- create ---- */

@@ -270,8 +270,9 @@ static dvi_status check_damping(dvi_field *field)
                                                  field->unknown[S->column[e]]);
       return dvi__fail(DVI_SINGULAR,
                        "maxwell: the losses have the entry %g at %s, so that fields would grow: "
-                       "take a Whitney star, repair the mesh (dvi mesh tells how), or other points",
-                       S->value[e], name.text);
+                       "take a Whitney star%s, repair the mesh (dvi mesh tells how), or other "
+                       "points",
+                       S->value[e], name.text, field->mesh->share != NULL ? " in one process" : "");
     }
     S->value[e] = 0;
   }

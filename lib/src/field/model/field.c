@@ -57,15 +57,23 @@ static double entry_at(const dvi_matrix *M, int64_t i)
   return 0;
 }
 
+/* Tell what has other entries. Shares have few stars that are not diagonal. */
+static const char *remedy_of(const dvi_field *field)
+{
+  const int is_share = field->mesh->share != NULL;
+  if (field->degree == 0)
+    return is_share ? "take a barycentric star and midpoint, other points, or another density"
+                    : "take a barycentric star, other points, or another density";
+  return is_share ? "repair the mesh (dvi mesh tells how), or take other points, or a Whitney star "
+                    "in one process"
+                  : "take a Whitney star, repair the mesh (dvi mesh tells how), or other points";
+}
+
 static dvi_status refuse_entry(const dvi_field *field, int k, int64_t cell, double entry)
 {
   const dvi__cell_name name = dvi__name_cell(field->mesh, k, cell);
-  return dvi__fail(
-      DVI_SINGULAR, "field: M_%d has the entry %g at %s, which is not positive: %s", k, entry,
-      name.text,
-      field->degree == 0
-          ? "take a barycentric star, other points, or another density"
-          : "take a Whitney star, repair the mesh (dvi mesh tells how), or other points");
+  return dvi__fail(DVI_SINGULAR, "field: M_%d has the entry %g at %s, which is not positive: %s", k,
+                   entry, name.text, remedy_of(field));
 }
 
 static dvi_status make_mass(dvi_field *field)
@@ -91,7 +99,9 @@ static double diagonal_of(const dvi__csr *matrix, int64_t i)
 static dvi_status refresh_mass(dvi_field *field, double *form)
 {
   if (field->mesh->share == NULL) return DVI_OK;
-  if (!field->mass_is_diagonal) return dvi__refuse_share(field->mesh, "field: a Whitney star");
+  if (!field->mass_is_diagonal)
+    return dvi__refuse_share_but(field->mesh, "field: a star that is not diagonal",
+                                 "the circumcentric star");
   for (int64_t i = 0; i < field->unknowns; i++) form[field->unknown[i]] = field->mass.value[i];
   DVI_TRY(dvi__refresh(field->mesh, field->degree, form));
   for (int64_t i = 0; i < field->unknowns; i++) field->mass.value[i] = form[field->unknown[i]];

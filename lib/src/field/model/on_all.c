@@ -3,7 +3,7 @@
 #include "core/status.h"
 #include "field/mesh/share.h"
 
-/* Make the sum of a M and b K. M is diagonal on shares. */
+/* Make the sum of M, S and K with their factors. M and S are diagonal on shares. */
 static dvi_status make_matrix(const dvi__field_equations *e, dvi__csr *sum)
 {
   const dvi__csr *M = &e->field->mass;
@@ -14,6 +14,7 @@ static dvi_status make_matrix(const dvi__field_equations *e, dvi__csr *sum)
     const int64_t at = dvi__csr_find(sum, i, (int)i);
     for (int64_t k = sum->start[i]; k < sum->start[i + 1]; k++) sum->value[k] *= e->stiffness;
     sum->value[at] += e->mass * M->value[i];
+    if (e->loss != NULL) sum->value[at] += e->losses * e->loss[i];
   }
   return DVI_OK;
 }
@@ -37,6 +38,9 @@ dvi_status dvi__on_all_create(const dvi__field_equations *equations, dvi__on_all
                              .A = dvi__csr_view(&A, 1),
                              .components = is_definite || equations->diagonal ? 0 : f->components,
                              .component = f->component,
+                             .mass = equations->sine != 0 ? f->mass.value : NULL,
+                             .cosine = equations->cosine,
+                             .sine = equations->sine,
                              .residual = equations->residual,
                              .diagonal = equations->diagonal,
                              .of = equations->of};

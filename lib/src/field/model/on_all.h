@@ -4,10 +4,13 @@
 #include "field/model/elliptic.h"
 #include "field/model/field.h"
 
-/* Equations with the Jacobian M + stiffness K + D, as in field/model/elliptic.h. */
+/* Equations with the Jacobian mass M + losses S + stiffness K + D, as in field/model/elliptic.h. */
 typedef struct dvi__field_equations {
   const dvi_field *field;
   double mass, stiffness; /* factors of M and K. Both 0: K alone */
+  const double *loss;     /* [unknowns] the diagonal S, or NULL */
+  double losses;          /* its factor */
+  double cosine, sine;    /* of equations of pairs, or both 0 */
   dvi_status (*residual)(void *of, const double *x, double *r);
   dvi_status (*diagonal)(void *of, const double *x, double *d);
   void *of;

@@ -71,7 +71,8 @@ dvi_status dvi_field_vector_potential(const dvi_field *field, const double *B, d
   inverse v = {.field = field};
   if (field == NULL || B == NULL || A == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "maxwell: a field, B and a place for A are needed");
-  DVI_TRY(dvi__refuse_share(field->mesh, "maxwell: a potential of B"));
+  DVI_TRY(dvi__refuse_share_but(field->mesh, "maxwell: a start by B, whose potential is sought,",
+                                "a start by A"));
   DVI_TRY(dvi_mesh_incidence(field->mesh, field->degree, &v.d));
   DVI_TRY(dvi_star_matrix(field->star, field->degree + 1, &v.M));
   v.right = DVI_NEW(double, 2 * field->unknowns + v.d.rows + field->cells);

@@ -36,7 +36,7 @@ typedef struct dvi__leapfrog {
   double *spare;       /* [cells + 2*faces] */
   double *change;      /* [cells] of stars that are not diagonal, E' at t_n once it is needed */
   int64_t changed;     /* that n, or -1 */
-  int is_lost;         /* processes could not give each other their values */
+  int is_lost;         /* values have overflowed, or processes could not exchange them */
   dvi__charge charge;
   dvi__leapfrog_solver solver;
 } dvi__leapfrog;

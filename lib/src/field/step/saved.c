@@ -1,5 +1,6 @@
 #include "field/step/saved.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "core/hash.h"
@@ -249,12 +250,36 @@ dvi_status dvi__check_same(const dvi_mesh *mesh, const char *name, size_t size,
 
 /* ---- marches of equal steps ---- */
 
+/* What is written is read again. */
+static dvi_status check_pieces(const dvi__saved_march *march)
+{
+  for (int i = 0; i < march->pieces; i++)
+    for (int64_t c = 0; c < march->piece[i].count; c++)
+      if (!isfinite(march->piece[i].value[c]))
+        return dvi__fail(DVI_NOT_FINITE, "march: its state has the number %g at t = %g",
+                         march->piece[i].value[c], march->at->t);
+  return DVI_OK;
+}
+
 dvi_status dvi__saved_march_put(const dvi__saved_march *march, dvi__sections_writer *writer)
 {
+  DVI_TRY(dvi__agree(march->mesh, check_pieces(march)));
   dvi__section_open(writer, march->method, march->version);
   dvi__section_put(writer, march->at, sizeof *march->at);
   dvi__section_open(writer, "forms", 1);
   return dvi__pieces_put(march->mesh, march->pieces, march->piece, writer);
+}
+
+/* Refuse the state of an integrator, whose solver leaves other roundings. */
+static dvi_status refuse_integrator(const dvi__saved_march *march, const dvi__sections *sections)
+{
+  if (dvi__sections_have(sections, march->method) || !dvi__sections_have(sections, "method"))
+    return DVI_OK;
+  return dvi__fail(
+      DVI_BAD_FILE,
+      "march: %s is the state of an integrator, and of no march. One process writes it "
+      "with an implicit method, and one goes on from it: leave mpirun out",
+      sections->name);
 }
 
 /* Find what was saved, and refuse what another march has saved. */
@@ -264,6 +289,7 @@ static dvi_status find_saved(const dvi__saved_march *march, const dvi__sections 
   dvi__section found;
   const size_t numbers = (size_t)dvi__pieces_size(march->mesh, march->pieces, march->piece,
                                                   sections->parts);
+  DVI_TRY(refuse_integrator(march, sections));
   DVI_TRY(dvi__section_find(sections, march->method, march->version, sizeof *at, &found));
   memcpy(at, found.content, sizeof *at);
   if (at->hash != march->at->hash || at->dt != march->at->dt)

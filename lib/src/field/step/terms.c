@@ -1,5 +1,7 @@
 #include "field/step/terms.h"
 
+#include <math.h>
+
 #include "core/status.h"
 
 void dvi__fill_coefficients(const dvi_field *field, double dt, double *keep, double *gain,
@@ -44,4 +46,28 @@ dvi_status dvi__find_first_currents(const dvi_field *field, double t, double hal
     J[c] /= t + half - from;
   }
   return DVI_OK;
+}
+
+/* Only finite numbers times 0 are 0. The compiler takes several at once. */
+static int have_overflown(int64_t count, const double *values)
+{
+  enum { LANES = 8 };
+  double zero[LANES] = {0}, sum = 0;
+  int64_t c = 0;
+  for (; c + LANES <= count; c += LANES)
+    for (int i = 0; i < LANES; i++) zero[i] += 0 * values[c + i];
+  for (; c < count; c++) sum += 0 * values[c];
+  for (int i = 0; i < LANES; i++) sum += zero[i];
+  return sum != 0;
+}
+
+dvi_status dvi__check_finite(const dvi_field *field, const char *form, const double *values,
+                             double t)
+{
+  int64_t c = 0;
+  if (!have_overflown(field->cells, values)) return DVI_OK;
+  while (isfinite(values[c])) c++;
+  return dvi__fail(DVI_NOT_FINITE,
+                   "march: %s has overflowed to %g at %s by t = %g: start from smaller values",
+                   form, values[c], dvi__name_cell(field->mesh, field->degree, c).text, t);
 }

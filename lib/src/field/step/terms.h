@@ -1,5 +1,6 @@
 /* What the steps of leapfrog take from a field: the matrix on their left side, the coefficients
- * that it is with diagonal stars, and the integrals of the currents' signals. */
+ * that it is with diagonal stars, and the integrals of the currents' signals; and what they must
+ * not give to it. */
 #ifndef DVI_FIELD_STEP_TERMS_H
 #define DVI_FIELD_STEP_TERMS_H
 #include "field/model/field.h"
@@ -18,5 +19,9 @@ dvi_status dvi__find_impulses(const dvi_field *field, double t, double half, dou
 /* Give the currents [currents] at the start: the means over the half step, so that nothing acts
  * that came before, or the signals at the start if they have no integrals. */
 dvi_status dvi__find_first_currents(const dvi_field *field, double t, double half, double *J);
+
+/* Refuse values [cells] of a form, by its letter, of which some are not finite at t. */
+dvi_status dvi__check_finite(const dvi_field *field, const char *form, const double *values,
+                             double t);
 
 #endif

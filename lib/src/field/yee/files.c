@@ -140,7 +140,7 @@ static void put_rows(gathering *g, row_pieces *of)
     for (int j = 0; j < y->axis[1].nodes; j++) {
       const int count = of(y, j, k, piece);
       for (int i = 0; i < count; i++)
-        if (y->divided < 0)
+        if (y->planes == NULL)
           dvi__section_put(g->writer, piece[i].x, piece[i].count * sizeof(double));
         else
           gather(g, piece[i].x, piece[i].count);
@@ -186,8 +186,8 @@ dvi_status dvi__yee_save(const void *self, dvi__sections_writer *writer)
   DVI_TRY(dvi__yee_check_ranks(y));
   const identity id = {hash_grid(y), y->dt, y->t0, y->t, y->step, y->charge != NULL};
   gathering g = {.y = y, .writer = writer};
-  if (y->divided >= 0) g.bits = DVI_NEW(int64_t, CHUNK);
-  DVI_TRY(dvi__yee_agree(y, g.bits != NULL || y->divided < 0
+  if (y->planes != NULL) g.bits = DVI_NEW(int64_t, CHUNK);
+  DVI_TRY(dvi__yee_agree(y, g.bits != NULL || y->planes == NULL
                                 ? DVI_OK
                                 : dvi__fail(DVI_NO_MEMORY, "yee: no memory to save")));
   dvi__section_open(writer, "yee", VERSION);
@@ -256,7 +256,7 @@ static dvi_status find(dvi__yee *y, uint64_t hash, const dvi__sections *sections
 /* Refuse sections of which the processes have different ones. Called on all of them. */
 static dvi_status check_same(const dvi__yee *y, const dvi__sections *sections)
 {
-  if (y->divided < 0) return DVI_OK;
+  if (y->planes == NULL) return DVI_OK;
   const uint64_t here = dvi__hash(DVI__HASH_START, sections->size, sections->bytes);
   const int is_same = dvi__yee_sum_modulo(y, here) == here * (uint64_t)dvi__yee_processes(y);
   return dvi__yee_agree(

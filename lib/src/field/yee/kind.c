@@ -160,7 +160,7 @@ static void facts_of(const void *self, dvi_march_facts *facts)
 static int writes(const void *self)
 {
   const dvi__yee *y = self;
-  return y->divided < 0 || y->own[y->divided][0] == 0;
+  return dvi__yee_rank(y) == 0;
 }
 
 static const dvi__march_kind yee_kind = {.name = "yee",

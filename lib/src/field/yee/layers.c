@@ -11,9 +11,8 @@
 /* Tell if all of the layers are across planes at which this process does not work. */
 static int is_elsewhere(const dvi__yee *y, int axis, const dvi__yee_layers *l)
 {
-  const int is_divided = axis == y->divided,
-            first = y->own[axis][0] - (is_divided ? y->ghosts[0] : 0),
-            last = y->own[axis][1] + (is_divided ? y->ghosts[1] : 0);
+  const int first = y->own[axis][0] - y->ghosts[axis][0],
+            last = y->own[axis][1] + y->ghosts[axis][1];
   return l->first >= last || l->first + l->count <= first;
 }
 
@@ -40,24 +39,25 @@ size_t dvi__yee_psi_at(const dvi__yee *y, int axis, int end, int copy, int which
          DVI__YEE_LEFT;
 }
 
-/* Layers along the divided axis have the sums of a plane row by row, and all others one after the
- * other. */
-size_t dvi__yee_copy_sums(const dvi__yee *y, int axis, int end, int copy, int layer, int j, int k,
-                          double *buffer, int takes)
+/* The four sums of a row in a layer follow each other. */
+size_t dvi__yee_copy_sums(const dvi__yee *y, int j, int k, double *buffer, int takes)
 {
-  const dvi__yee_layers *l = &y->axis[axis].layers[end];
-  const size_t across = y->divided == 2 ? y->rows[0] : 1, rows = axis == y->divided ? across : 1,
-               count = DVI__YEE_DIFFERENCES * (axis == 0            ? across * (size_t)l->width
-                                               : axis == y->divided ? y->width
-                                                                    : (size_t)l->count * y->width);
-  for (size_t row = 0; row < rows; row++) {
-    const int at_row = y->divided == 2 ? j + (int)row : j;
-    double *psi = l->psi + dvi__yee_psi_at(y, axis, end, copy, 0, layer, at_row, k) -
-                  (axis == 0 ? 0 : DVI__YEE_LEFT);
-    memcpy(takes ? psi : buffer + row * count, takes ? buffer + row * count : psi,
-           count * sizeof *psi);
-  }
-  return rows * count;
+  const int place[3] = {0, j, k};
+  size_t copied = 0;
+  for (int axis = 0; axis < 3; axis++)
+    for (int e = 0; e < 2; e++) {
+      const dvi__yee_layers *l = &y->axis[axis].layers[e];
+      const int layer = axis == 0 ? 0 : place[axis] - l->first;
+      if (l->count == 0 || layer < 0 || layer >= l->count) continue;
+      const size_t width = axis == 0 ? (size_t)l->width : y->width,
+                   count = DVI__YEE_DIFFERENCES * width;
+      for (int copy = 0; copy < y->copies; copy++, copied += count) {
+        double *psi = l->psi + dvi__yee_psi_at(y, axis, e, copy, 0, layer, j, k) -
+                      (axis == 0 ? 0 : DVI__YEE_LEFT);
+        memcpy(takes ? psi : buffer + copied, takes ? buffer + copied : psi, count * sizeof *psi);
+      }
+    }
+  return copied;
 }
 
 dvi_status dvi__yee_make_layers(dvi__yee *y)

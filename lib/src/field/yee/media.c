@@ -178,18 +178,18 @@ static double *new_array(const dvi__yee *y, quantity what)
  * around if the axis repeats itself. */
 static int before_own(const dvi__yee *y, int axis)
 {
-  const int begin = dvi__yee_begin(y, axis), is_divided = axis == y->divided;
-  if (!is_divided || (begin == 0 && !y->axis[axis].wraps)) return begin;
-  return begin - (y->ghosts[0] > 0 ? y->ghosts[0] : 1);
+  const int begin = dvi__yee_begin(y, axis);
+  if (!dvi__yee_is_divided(y, axis) || (begin == 0 && !y->axis[axis].wraps)) return begin;
+  return begin - (y->ghosts[axis][0] > 0 ? y->ghosts[axis][0] : 1);
 }
 
 /* Find the planes of an axis at which a component needs materials. They are around the axis if it
  * repeats itself. A step needs 1/mu before the planes where it updates E, too, but for the
- * component along the divided axis. */
+ * component along the axis. */
 static void find_range(const dvi__yee *y, int component, int axis, int *range)
 {
   dvi__yee_reach(y, axis, 0, y->together - 1, range);
-  if (component >= DVI__YEE_B && component % 3 != y->divided) range[0] = before_own(y, axis);
+  if (component >= DVI__YEE_B && component % 3 != axis) range[0] = before_own(y, axis);
   const int places = dvi__yee_places(y, component, axis);
   if (!y->axis[axis].wraps && range[1] > places) range[1] = places;
 }
@@ -264,11 +264,12 @@ static void wrap_faces(const dvi__yee *y, double *array)
     for (size_t start = row * block; start < (row + 1) * block; start += y->width)
       array[start + DVI__YEE_LEFT - 1] = array[start + DVI__YEE_LEFT + n - 1];
   const size_t plane = y->rows[0] * block;
-  const int copies_rows = y->axis[1].wraps && y->divided != 1;
+  const int copies_rows = y->axis[1].wraps && !dvi__yee_is_divided(y, 1),
+            copies_planes = y->axis[2].wraps && !dvi__yee_is_divided(y, 2);
   for (size_t start = 0; start < y->rows[1] * plane && copies_rows; start += plane)
     for (size_t i = 0; i < block; i++)
       array[start + i] = array[start + (size_t)y->axis[1].cells * block + i];
-  for (size_t i = 0; i < plane && y->axis[2].wraps && y->divided != 2; i++)
+  for (size_t i = 0; i < plane && copies_planes; i++)
     array[i] = array[(size_t)y->axis[2].cells * plane + i];
 }
 

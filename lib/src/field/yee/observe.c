@@ -79,21 +79,20 @@ static double displacement(const dvi__yee *y, int c, const int *place, int all, 
   return star * (E + worn - driven);
 }
 
-/* Find D, and its size, on the edges along the divided axis before the own nodes. NULL on a whole
- * grid. */
-static const double *displacements_below(const dvi__yee *y, int all)
+/* Find D, and its size, on the edges along a divided axis before the own nodes. NULL along another
+ * axis. */
+static const double *displacements_below(const dvi__yee *y, int c, int all)
 {
-  const int c = y->divided;
-  if (c < 0 || y->slot[c] < 0) return NULL;
-  const int across = c == 2 ? 1 : 2;
+  if (!dvi__yee_is_divided(y, c) || y->slot[c] < 0) return NULL;
+  const int across = 3 - c, end = dvi__yee_end(y, c, across);
   double *sent = dvi__yee_plane_sent(y);
   int place[3] = {0, 0, 0};
-  place[c] = dvi__yee_last_boxes(y);
-  for (place[across] = 0; place[across] < dvi__yee_places(y, c, across); place[across]++)
+  place[c] = dvi__yee_last_boxes(y, c);
+  for (place[across] = dvi__yee_begin(y, across); place[across] < end; place[across]++)
     for (place[0] = 0; place[0] < dvi__yee_places(y, c, 0); place[0]++)
-      sent[dvi__yee_at_plane(y, 0, 0, place)] = displacement(
-          y, c, place, all, &sent[dvi__yee_at_plane(y, 1, 0, place)]);
-  return dvi__yee_pass_plane(y, 0);
+      sent[dvi__yee_at_plane(y, c, 0, 0, place)] = displacement(
+          y, c, place, all, &sent[dvi__yee_at_plane(y, c, 1, 0, place)]);
+  return dvi__yee_pass_plane(y, c, 0);
 }
 
 /* Give D of an edge before a node, and its size, that of another process from `below`. */
@@ -101,12 +100,12 @@ static double displacement_before(const dvi__yee *y, int c, const int *place, in
                                   const double *below, double *size)
 {
   if (dvi__yee_owns(y, place)) return displacement(y, c, place, all, size);
-  *size = below[dvi__yee_at_plane(y, 1, 0, place)];
-  return below[dvi__yee_at_plane(y, 0, 0, place)];
+  *size = below[dvi__yee_at_plane(y, c, 1, 0, place)];
+  return below[dvi__yee_at_plane(y, c, 0, 0, place)];
 }
 
 /* Give the outflow of D at a node, and the sum of the sizes of its terms. */
-static double outflow(const dvi__yee *y, const int *node, int all, const double *below,
+static double outflow(const dvi__yee *y, const int *node, int all, const double *const *below,
                       double *size)
 {
   double sum = 0;
@@ -117,7 +116,7 @@ static double outflow(const dvi__yee *y, const int *node, int all, const double 
     if (y->slot[c] < 0) continue;
     double size_in = 0, size_out = 0, in = 0, out = 0;
     if (node[c] > 0 || y->axis[c].wraps)
-      in = displacement_before(y, c, before, all, below, &size_in);
+      in = displacement_before(y, c, before, all, below[c], &size_in);
     if (node[c] < y->axis[c].cells) out = displacement(y, c, node, all, &size_out);
     sum += out - in;
     *size = *size + size_in + size_out;
@@ -133,9 +132,10 @@ typedef struct charges {
 static void visit_own_nodes(const dvi__yee *y, int all, double *keep, const double *kept,
                             dvi__block_sum *sum, double *most)
 {
-  const double *below = displacements_below(y, all);
+  const double *below[3];
   int node[3] = {0, 0, 0};
   size_t at = 0;
+  for (int c = 0; c < 3; c++) below[c] = displacements_below(y, c, all);
   for (node[2] = y->own[2][0]; node[2] < y->own[2][1]; node[2]++)
     for (node[1] = y->own[1][0]; node[1] < y->own[1][1]; node[1]++)
       for (node[0] = 0; node[0] < y->axis[0].nodes; node[0]++, at++) {

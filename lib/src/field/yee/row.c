@@ -160,9 +160,10 @@ static void copy_around(const dvi__yee *y, int component, int j, int k)
   const int is_face = component >= DVI__YEE_B;
   const int from_j = is_face ? across->cells - 1 : 0, from_k = is_face ? up->cells - 1 : 0,
             to_j = is_face ? -1 : across->cells, to_k = is_face ? -1 : up->cells;
-  if (across->wraps && y->divided != 1 && j == from_j)
+  if (across->wraps && !dvi__yee_is_divided(y, 1) && j == from_j)
     copy_rows(y, component, across, j, k, to_j, k);
-  if (up->wraps && y->divided != 2 && k == from_k) copy_rows(y, component, up, j, k, j, to_k);
+  if (up->wraps && !dvi__yee_is_divided(y, 2) && k == from_k)
+    copy_rows(y, component, up, j, k, j, to_k);
 }
 
 void dvi__yee_wrap_rows(const dvi__yee *y, int j, int k)

@@ -30,7 +30,7 @@ static int move_inside(const dvi__yee *y, int component, int *place, value *phas
     if (!a->wraps) return 0;
     const double sine = place[l] < 0 ? -a->sine : a->sine;
     place[l] += place[l] < 0 ? a->cells : -a->cells;
-    if (l == y->divided && !dvi__yee_owns(y, place)) continue;
+    if (!dvi__yee_owns_along(y, l, place[l])) continue;
     *phase = (value){phase->re * a->cosine - phase->im * sine,
                      phase->im * a->cosine + phase->re * sine};
   }
@@ -105,12 +105,14 @@ static value change_of_face(const dvi__yee_moment *m, int c, const int *place)
   return sum;
 }
 
-/* Give what another process found before the own planes. */
+/* Give what another process found before the own planes of an axis. */
 static value B_below(const dvi__yee_moment *m, int c, const int *place)
 {
   const dvi__yee *y = m->yee;
-  return (value){m->below[dvi__yee_at_plane(y, c, 0, place)],
-                 y->copies > 1 ? m->below[dvi__yee_at_plane(y, c, 1, place)] : 0};
+  const int axis = dvi__yee_owns_along(y, 1, place[1]) ? 2 : 1;
+  const double *below = m->below[axis];
+  return (value){below[dvi__yee_at_plane(y, axis, c, 0, place)],
+                 y->copies > 1 ? below[dvi__yee_at_plane(y, axis, c, 1, place)] : 0};
 }
 
 value dvi__yee_B_at(const dvi__yee_moment *m, int c, const int *place)
@@ -126,24 +128,32 @@ value dvi__yee_B_at(const dvi__yee_moment *m, int c, const int *place)
   return times(phase, B);
 }
 
+/* Put B of the last own boxes of an axis to where planes are sent from. */
+static void put_last_faces(const dvi__yee_moment *m, int axis, int c, double *sent)
+{
+  const dvi__yee *y = m->yee;
+  const int across = 3 - axis, end = dvi__yee_end(y, DVI__YEE_B + c, across);
+  int place[3] = {0, 0, 0};
+  place[axis] = dvi__yee_last_boxes(y, axis);
+  for (place[across] = dvi__yee_begin(y, across); place[across] < end; place[across]++)
+    for (place[0] = 0; place[0] < dvi__yee_places(y, DVI__YEE_B + c, 0); place[0]++) {
+      const value B = dvi__yee_B_at(m, c, place);
+      sent[dvi__yee_at_plane(y, axis, c, 0, place)] = B.re;
+      if (y->copies > 1) sent[dvi__yee_at_plane(y, axis, c, 1, place)] = B.im;
+    }
+}
+
 /* Without a part of a step B is what is stored, and other processes have it. */
 void dvi__yee_pass_moment(dvi__yee_moment *m)
 {
   const dvi__yee *y = m->yee;
-  if (y->divided < 0 || m->part == 0) return;
-  double *sent = dvi__yee_plane_sent(y);
-  int place[3] = {0, 0, 0}, *across = &place[y->divided == 2 ? 1 : 2];
-  place[y->divided] = dvi__yee_last_boxes(y);
-  for (int c = 0; c < 3; c++) {
-    if (y->slot[DVI__YEE_B + c] < 0 || c == y->divided) continue;
-    for (*across = 0; *across < dvi__yee_places(y, DVI__YEE_B + c, 3 - y->divided); ++*across)
-      for (place[0] = 0; place[0] < dvi__yee_places(y, DVI__YEE_B + c, 0); place[0]++) {
-        const value B = dvi__yee_B_at(m, c, place);
-        sent[dvi__yee_at_plane(y, c, 0, place)] = B.re;
-        if (y->copies > 1) sent[dvi__yee_at_plane(y, c, 1, place)] = B.im;
-      }
+  for (int axis = 1; axis < 3 && m->part != 0; axis++) {
+    if (!dvi__yee_is_divided(y, axis)) continue;
+    for (int c = 0; c < 3; c++)
+      if (y->slot[DVI__YEE_B + c] >= 0 && c != axis)
+        put_last_faces(m, axis, c, dvi__yee_plane_sent(y));
+    m->below[axis] = dvi__yee_pass_plane(y, axis, 1);
   }
-  m->below = dvi__yee_pass_plane(y, 1);
 }
 
 /* ---- E ---- */

@@ -26,7 +26,7 @@ static int rows_of(const dvi__yee *y)
 
 static int has_ghosts(const dvi__yee *y)
 {
-  return y->ghosts[0] + y->ghosts[1] > 0;
+  return y->ghosts[1][0] + y->ghosts[1][1] + y->ghosts[2][0] + y->ghosts[2][1] > 0;
 }
 
 /* Give the first row, or plane, of the first of several steps. */
@@ -57,14 +57,14 @@ static dvi__yee_worker worker_of(const dvi__yee *y, int member, int step)
 static int early(const dvi__yee *y, int axis)
 {
   if (has_ghosts(y)) return -1;
-  if (axis == y->divided) return dvi__yee_last_boxes(y);
+  if (dvi__yee_is_divided(y, axis)) return dvi__yee_last_boxes(y, axis);
   return y->axis[axis].wraps ? y->axis[axis].cells - 1 : -1;
 }
 
-/* Rows first to last-1 of a plane. At the place `bare` of the divided axis B is updated alone,
- * which E behind it needs. Elsewhere that is INT_MIN. */
+/* Rows first to last-1 of a plane. If that is bare, or the first row, B is updated there alone,
+ * which E behind it needs. */
 typedef struct row_range {
-  int first, last, k, bare;
+  int first, last, k, is_bare, bare_row; /* INT_MIN without one */
 } row_range;
 
 /* Take a step of rows. If y is divided, the early ones are done. */
@@ -72,23 +72,26 @@ static void take_rows(const dvi__yee_worker *w, const row_range *r)
 {
   const dvi__yee *y = w->yee;
   const int k = dvi__yee_around(y, 2, r->k), is_done = k == early(y, 2), early_row = early(y, 1);
-  if (early_row >= 0 && y->divided != 1 && r->first == 0 && !is_done)
+  if (early_row >= 0 && !dvi__yee_is_divided(y, 1) && r->first == 0 && !is_done)
     dvi__yee_update_faces(w, early_row, k);
   for (int row = r->first; row < r->last; row++) {
     const int j = dvi__yee_around(y, 1, row);
     if (!is_done && j != early_row) dvi__yee_update_faces(w, j, k);
-    if ((y->divided == 1 ? row : r->k) != r->bare) dvi__yee_update_edges(w, j, k);
+    if (!r->is_bare && row != r->bare_row) dvi__yee_update_edges(w, j, k);
   }
 }
 
+/* Take those of the last plane, and where y is divided those of the last row of other planes. */
 static void take_early_faces(void *user, int member)
 {
   const sweep *s = user;
   const dvi__yee *y = s->yee;
   const dvi__yee_worker worker = worker_of(y, member, 0);
-  if (y->divided == 1 && member == 0) dvi__yee_update_faces(&worker, early(y, 1), 0);
-  for (int j = member; j < rows_of(y) && early(y, 2) >= 0; j += y->threads)
-    dvi__yee_update_faces(&worker, j, early(y, 2));
+  const int plane = early(y, 2), row = dvi__yee_is_divided(y, 1) ? early(y, 1) : -1;
+  for (int j = y->own[1][0] + member; j < y->own[1][1] && plane >= 0; j += y->threads)
+    dvi__yee_update_faces(&worker, j, plane);
+  for (int k = y->own[2][0] + member; k < y->own[2][1] && row >= 0; k += y->threads)
+    if (k != plane) dvi__yee_update_faces(&worker, row, k);
 }
 
 static void await_tile(const dvi__yee *y, int tile, int front)
@@ -111,9 +114,8 @@ static void take_plane(const sweep *s, const dvi__yee_worker *worker, int tile, 
   const row_range r = {.first = low > across[0] ? low : across[0],
                        .last = high < across[1] ? high : across[1],
                        .k = k,
-                       .bare = y->ghosts[0] == 0 ? INT_MIN
-                               : y->divided == 1 ? across[0]
-                                                 : planes[0]};
+                       .is_bare = y->ghosts[2][0] > 0 && k == planes[0],
+                       .bare_row = y->ghosts[1][0] > 0 ? across[0] : INT_MIN};
   take_rows(worker, &r);
 }
 
@@ -148,7 +150,7 @@ static void run(const dvi__yee *y, void (*work)(void *user, int member), sweep *
 /* Take a step after the early faces, which other processes need, and give them E. */
 static void run_divided(const dvi__yee *y, sweep *s)
 {
-  if (y->axis[2].wraps || y->divided >= 0) run(y, take_early_faces, s);
+  if (y->axis[2].wraps || y->planes != NULL) run(y, take_early_faces, s);
   dvi__yee_pass_faces(y);
   run(y, take_tiles, s);
   dvi__yee_pass_edges(y);
@@ -174,24 +176,39 @@ void dvi__yee_sweep(dvi__yee *y, int steps)
  * each step, unless other processes have them: then ghosts do, but for phases, whose roundings
  * depend on where they are multiplied with. A process has the ghosts of its neighbours only, and on
  * both sides other ones. */
-static int most_together(const dvi__yee *y, int processes)
+static int most_together(const dvi__yee *y)
 {
-  const int cells = processes > 1 ? y->axis[y->axes - 1].cells : 0;
-  for (int l = 1; l < 3; l++)
-    if (y->axis[l].wraps && (processes == 1 || l < y->axes - 1 || y->copies > 1)) return 1;
-  if (processes == 1) return DVI__YEE_MOST_TOGETHER;
-  return processes == 2 && y->axis[y->axes - 1].wraps ? cells / 4 : cells / processes;
+  int most = DVI__YEE_MOST_TOGETHER;
+  for (int l = 1; l < 3; l++) {
+    const dvi__yee_axis *a = &y->axis[l];
+    const int parts = y->parts[l] == 2 && a->wraps ? 4 : y->parts[l];
+    if (a->wraps && (parts == 1 || y->copies > 1)) return 1;
+    if (parts > 1 && a->cells / parts < most) most = a->cells / parts;
+  }
+  return most;
+}
+
+/* Give how many planes a process has. Of a grid that is divided along two axes these are as many as
+ * slabs would have to have the same surface. */
+static int64_t planes_of(const dvi__yee *y)
+{
+  int64_t planes = 0;
+  for (int l = 1; l < 3; l++) {
+    const int64_t here = y->axis[l].cells / y->parts[l];
+    if (dvi__yee_is_divided(y, l)) planes = planes > 0 ? planes * here / (planes + here) : here;
+  }
+  return planes;
 }
 
 /* Choose how many steps go together if nothing is asked for: one where all of a process fits into
  * a cache. A process that takes s together updates up to s planes of others in a step, and goes
  * through its own ones in memory 1/s times. The square root of a quarter of these balances it. */
-static int default_together(const dvi__yee *y, int processes, size_t bytes)
+static int default_together(const dvi__yee *y, size_t bytes)
 {
-  const int planes = y->axis[y->axes - 1].cells / processes;
+  const int64_t planes = planes_of(y);
   int steps = DEFAULT_TOGETHER;
   if (bytes <= CACHE) return 1;
-  while (processes > 1 && steps > 1 && 4 * steps * steps > planes) steps--;
+  while (planes > 0 && steps > 1 && 4 * steps * steps > planes) steps--;
   return steps;
 }
 
@@ -200,7 +217,7 @@ static size_t bytes_of_row(const dvi__yee *y)
   return (size_t)(y->copies * y->components) * y->width * sizeof(double);
 }
 
-dvi_status dvi__yee_choose_together(dvi__yee *y, const dvi_yee_terms *terms, int processes)
+dvi_status dvi__yee_choose_together(dvi__yee *y, const dvi_yee_terms *terms)
 {
   if (terms->threads < 0 || terms->threads > 1024 || terms->together < 0 ||
       terms->together > DVI__YEE_MOST_TOGETHER)
@@ -208,11 +225,11 @@ dvi_status dvi__yee_choose_together(dvi__yee *y, const dvi_yee_terms *terms, int
                      "yee: %d threads and %d steps together are asked for; up to 1024 and %d are "
                      "possible",
                      terms->threads, terms->together, DVI__YEE_MOST_TOGETHER);
-  size_t all = bytes_of_row(y) / (size_t)processes;
+  size_t all = bytes_of_row(y) / (size_t)(y->parts[1] * y->parts[2]);
   for (int l = 1; l < 3; l++)
     if (!y->axis[l].is_trivial) all *= (size_t)y->axis[l].cells + 2;
-  const int most = most_together(y, processes);
-  y->together = terms->together > 0 ? terms->together : default_together(y, processes, all);
+  const int most = most_together(y);
+  y->together = terms->together > 0 ? terms->together : default_together(y, all);
   if (y->together > most) y->together = most;
   return DVI_OK;
 }

@@ -85,7 +85,7 @@ typedef struct dvi__yee_beam dvi__yee_beam;
 /* A time between the last step and the next one. See sample.c. */
 typedef struct dvi__yee_moment dvi__yee_moment;
 
-/* How processes speak with each other about the planes of a divided grid. See ranks.c. */
+/* How processes speak with each other about planes of a divided grid. See planes.c. */
 typedef struct dvi__yee_planes dvi__yee_planes;
 
 typedef struct dvi__yee {
@@ -97,9 +97,12 @@ typedef struct dvi__yee {
   int edges_slots;   /* slots of E. They come first */
   size_t width;      /* numbers of a row */
   size_t count;      /* places that a loop passes over */
-  int divided;       /* the axis that processes divide among them, or -1 */
+  int parts[3];      /* processes along an axis, 1 unless it is divided. x is not */
+  int part[3];       /* the number of this process along each axis */
   int own[3][2];     /* nodes own[l][0] to own[l][1]-1 of an axis are of this process */
-  int ghosts[2];     /* planes before and behind these that it works on, too. See ranks.c */
+  int ghosts[3][2];  /* planes before and behind these that it works on, too. See planes.c */
+  int first[3];      /* the place along an axis that is the first one in memory */
+  int around[3];     /* boxes of a divided axis that repeats itself, 0 for others */
   size_t rows[2];    /* rows along y, planes along z, with the layers around them */
   size_t size;       /* numbers of a copy */
   ptrdiff_t next[3]; /* from a place to the next one along an axis, 0 if trivial */
@@ -142,21 +145,28 @@ enum { DVI__YEE_SCRATCH = 10, DVI__YEE_MOST_TOGETHER = 16 };
 
 /* ---- places ---- */
 
+/* Tell if processes divide an axis among them. */
+static inline int dvi__yee_is_divided(const dvi__yee *y, int axis)
+{
+  return y->parts[axis] > 1;
+}
+
 /* Give how many layers an axis has before (0) the own places, or behind (1) the own boxes. */
 static inline int dvi__yee_margin(const dvi__yee *y, int axis, int side)
 {
-  if (axis == y->divided && y->ghosts[side] > 0) return y->ghosts[side];
-  return !y->axis[axis].is_trivial;
+  const int ghosts = y->ghosts[axis][side];
+  return ghosts > 0 ? ghosts : !y->axis[axis].is_trivial;
 }
 
-/* Give the number of a place along an axis among those in memory. The axis that is divided has
+/* Give the number of a place along an axis among those in memory. An axis that is divided has
  * planes of the other processes beside the own ones, and may repeat itself. */
 static inline size_t dvi__yee_row_along(const dvi__yee *y, int axis, int i)
 {
-  const dvi__yee_axis *a = &y->axis[axis];
-  int row = i - y->own[axis][0] + dvi__yee_margin(y, axis, 0);
-  if (axis == y->divided && row < 0) row += a->cells;
-  if (axis == y->divided && row >= (int)y->rows[axis - 1]) row -= a->cells;
+  int row = i - y->first[axis];
+  if (y->around[axis] > 0) {
+    if (row < 0) row += y->around[axis];
+    if (row >= (int)y->rows[axis - 1]) row -= y->around[axis];
+  }
   return (size_t)row;
 }
 
@@ -220,11 +230,14 @@ static inline int dvi__yee_end(const dvi__yee *y, int component, int axis)
   return y->own[axis][1] < places ? y->own[axis][1] : places;
 }
 
-/* Tell if a place is of this process. */
+/* Tell if a place is of this process, or with others of its number along an axis. */
+static inline int dvi__yee_owns_along(const dvi__yee *y, int axis, int i)
+{
+  return !dvi__yee_is_divided(y, axis) || (i >= y->own[axis][0] && i < y->own[axis][1]);
+}
 static inline int dvi__yee_owns(const dvi__yee *y, const int *place)
 {
-  const int l = y->divided;
-  return l < 0 || (place[l] >= y->own[l][0] && place[l] < y->own[l][1]);
+  return dvi__yee_owns_along(y, 1, place[1]) && dvi__yee_owns_along(y, 2, place[2]);
 }
 
 /* Give the places of an axis at which this process updates E, or B, so that `left` more steps need
@@ -232,9 +245,8 @@ static inline int dvi__yee_owns(const dvi__yee *y, const int *place)
  * repeats itself they may be beyond its ends. */
 static inline void dvi__yee_reach(const dvi__yee *y, int axis, int is_face, int left, int *range)
 {
-  const int is_divided = axis == y->divided;
-  range[0] = y->own[axis][0] - (is_divided && y->ghosts[0] > 0 ? left + is_face : 0);
-  range[1] = y->own[axis][1] + (is_divided && y->ghosts[1] > 0 ? left : 0);
+  range[0] = y->own[axis][0] - (y->ghosts[axis][0] > 0 ? left + is_face : 0);
+  range[1] = y->own[axis][1] + (y->ghosts[axis][1] > 0 ? left : 0);
 }
 
 /* Give the place of the grid for one that is beyond the end of an axis that repeats itself. */
@@ -245,24 +257,27 @@ static inline int dvi__yee_around(const dvi__yee *y, int axis, int i)
   return a->wraps && i >= a->cells ? i - a->cells : i;
 }
 
-/* Tell if this process updates a component at a place in some step. */
+/* Tell if this process updates a component in some step at the number i along an axis, and at a
+ * place. */
+static inline int dvi__yee_updates_along(const dvi__yee *y, int component, int axis, int i)
+{
+  const int around = y->around[axis];
+  int range[2];
+  if (!dvi__yee_is_divided(y, axis)) return 1;
+  dvi__yee_reach(y, axis, component >= DVI__YEE_B, y->together - 1, range);
+  return (i >= range[0] && i < range[1]) || (i - around >= range[0] && i - around < range[1]) ||
+         (i + around >= range[0] && i + around < range[1]);
+}
 static inline int dvi__yee_updates(const dvi__yee *y, int component, const int *place)
 {
-  const int l = y->divided, cells = l < 0 || !y->axis[l].wraps ? 0 : y->axis[l].cells;
-  int range[2];
-  if (l < 0) return 1;
-  dvi__yee_reach(y, l, component >= DVI__YEE_B, y->together - 1, range);
-  for (int i = place[l] - cells; i <= place[l] + cells; i += cells) {
-    if (i >= range[0] && i < range[1]) return 1;
-    if (cells == 0) return 0;
-  }
-  return 0;
+  return dvi__yee_updates_along(y, component, 1, place[1]) &&
+         dvi__yee_updates_along(y, component, 2, place[2]);
 }
 
-/* Give the last plane of boxes along the divided axis. */
-static inline int dvi__yee_last_boxes(const dvi__yee *y)
+/* Give the last own plane of boxes along an axis. */
+static inline int dvi__yee_last_boxes(const dvi__yee *y, int axis)
 {
-  return dvi__yee_end(y, y->divided, y->divided) - 1;
+  return dvi__yee_end(y, axis, axis) - 1;
 }
 
 /* Tell if E_c has an unknown at the place i of an axis. */
@@ -402,10 +417,8 @@ dvi_status dvi__yee_make_layers(dvi__yee *yee);
 size_t dvi__yee_psi_at(const dvi__yee *yee, int axis, int end, int copy, int which, int layer,
                        int j, int k);
 
-/* Copy all four of the layers at one end that a plane of the divided axis has, of which (j, k) is
- * the first row, to a buffer or from it. Return how many numbers they are. */
-size_t dvi__yee_copy_sums(const dvi__yee *yee, int axis, int end, int copy, int layer, int j, int k,
-                          double *buffer, int takes);
+/* Copy all of the rows at (j, k) to a buffer or from it. Return how many numbers they are. */
+size_t dvi__yee_copy_sums(const dvi__yee *yee, int j, int k, double *buffer, int takes);
 
 /* ---- row.c ---- */
 
@@ -423,8 +436,8 @@ void dvi__yee_wrap_rows(const dvi__yee *yee, int j, int k);
 
 /* ---- sweep.c ---- */
 
-/* Choose how many steps go together, as all of `processes` processes do. */
-dvi_status dvi__yee_choose_together(dvi__yee *yee, const dvi_yee_terms *terms, int processes);
+/* Choose how many steps go together, as all processes do. */
+dvi_status dvi__yee_choose_together(dvi__yee *yee, const dvi_yee_terms *terms);
 /* Choose the tiles, and make what sweeps need. */
 dvi_status dvi__yee_make_sweeps(dvi__yee *yee, const dvi_yee_terms *terms);
 /* Take up to `together` steps with the drives that are prepared. */
@@ -492,7 +505,7 @@ struct dvi__yee_moment {
   double part;            /* from 0 to 1, the part of the next step */
   const double *on_faces; /* drives of B's next step */
   const double *on_edges; /* drives of E from the last half step to this time */
-  const double *below;    /* B at this time before the own planes of a divided grid */
+  const double *below[3]; /* B at this time before the own planes of divided axes */
 };
 
 /* Give what E_c and B_c are at a place, which may be beyond the end of an axis that repeats
@@ -500,7 +513,7 @@ struct dvi__yee_moment {
 dvi__yee_value dvi__yee_stored(const dvi__yee *yee, int component, const int *place);
 dvi__yee_value dvi__yee_B_at(const dvi__yee_moment *moment, int c, const int *place);
 dvi__yee_value dvi__yee_E_at(const dvi__yee_moment *moment, int c, const int *place);
-/* Give B at the moment to the process after this one, which needs it for E. */
+/* Give B at the moment to the processes after this one, which need it for E. */
 void dvi__yee_pass_moment(dvi__yee_moment *moment);
 /* Move E_c at a place from the start to half a step later, with the curl of H if there is B. */
 void dvi__yee_start_edge(const dvi__yee_moment *moment, int c, const int *place, int has_B);

@@ -121,7 +121,22 @@ static dvi_status make_room(const dvi_yee_terms *terms, const dvi_march *march, 
   return good ? DVI_OK : DVI_NO_MEMORY;
 }
 
-/* Gather the places of a component, plane by plane of the last axis, which is divided. */
+/* Fill the own rows of a plane across the last axis. Rows along x are not divided. */
+static void fill_plane(const dvi_yee_terms *terms, dvi_march_form form, int component,
+                       const int *at, const layout *of, const gathered *g)
+{
+  const int last = terms->axes - 1;
+  const int64_t row = of->next[1], rows = of->next[last] / row;
+  int index[3] = {0};
+  index[last] = at[last];
+  for (int64_t j = 0; j < rows; j++) {
+    if (last == 2) index[1] = (int)j;
+    const int64_t here = dvi_yee_place(terms, form, component, index);
+    if (here >= 0) memcpy(g->plane + j * row, g->own + here, (size_t)row * sizeof *g->plane);
+  }
+}
+
+/* Gather the places of a component, plane by plane of the last axis. */
 static int gather_component(const dvi_yee_terms *terms, dvi_march_form form, int component,
                             const gathered *g)
 {
@@ -134,9 +149,8 @@ static int gather_component(const dvi_yee_terms *terms, dvi_march_form form, int
     const int64_t at = dvi_yee_place(&g->whole, form, component, index);
     /* beyond the last plane there is none, or the first one again */
     if (at != of.first + index[last] * count) break;
-    const int64_t here = dvi_yee_place(terms, form, component, index);
     memset(g->plane, 0, (size_t)count * sizeof *g->plane);
-    if (here >= 0) memcpy(g->plane, g->own + here, (size_t)count * sizeof *g->plane);
+    fill_plane(terms, form, component, index, &of, g);
     failed = ranks->sum((int)count, g->plane, ranks->user);
     if (g->all != NULL) memcpy(g->all + at, g->plane, (size_t)count * sizeof *g->plane);
   }

@@ -6,6 +6,19 @@
 #include "scene/sections/sections.h"
 #include "text/heap.h"
 
+static bool is_called(const char *method, const char *name)
+{
+  const size_t length = strlen(name);
+  return strncmp(method, name, length) == 0 && (method[length] == '\0' || method[length] == ':');
+}
+
+/* Tell if a method is one by which only shares march. Whole meshes have it as systems do. */
+static bool is_implicit(const char *method)
+{
+  return is_called(method, "midpoint") || is_called(method, "imex") ||
+         is_called(method, "galerkin");
+}
+
 int dvi_scene_marches(const dvi_scene *scene, const char *method)
 {
   if (scene == NULL || (scene->field == NULL && scene->density == NULL)) return 0;
@@ -13,12 +26,11 @@ int dvi_scene_marches(const dvi_scene *scene, const char *method)
   if (method == NULL) return 0;
   if (scene->density != NULL) return dvi__density_marches(scene, method);
   if (dvi__is_elastic(scene)) return dvi__elastic_marches(method);
-  /* Only shares of waves march by midpoint. Whole meshes have it as systems do. */
-  if (dvi__is_share(scene) && strcmp(method, "midpoint") == 0) return scene->field->maxwell == NULL;
-  const size_t length = strcspn(method, ":");
+  if (dvi__is_share(scene) && is_implicit(method))
+    return scene->field->maxwell == NULL || is_called(method, "midpoint");
   const char *name;
   for (int i = 0; (name = dvi_march_method_name(i)) != NULL; i++)
-    if (strlen(name) == length && strncmp(name, method, length) == 0) return 1;
+    if (is_called(method, name)) return 1;
   return 0;
 }
 
@@ -84,7 +96,7 @@ dvi_status dvi_scene_march_create(const dvi_scene *scene, const dvi_march_option
   const struct dvi__scene_field *f = scene->field;
   const bool divides_grid = suits_grid(f, &all) && f->ranks != NULL;
   if (dvi__is_share(scene) && !divides_grid && strcmp(all.method, "leapfrog") != 0 &&
-      strcmp(all.method, "midpoint") != 0)
+      !is_implicit(all.method))
     return DVI_UNSUPPORTED;
   if (f->kind != DVI_CIRCUMCENTRIC && strcmp(all.method, "yee") == 0 &&
       dvi_mesh_kind(f->mesh) == DVI_BOXES)

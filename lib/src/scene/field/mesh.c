@@ -116,7 +116,7 @@ static bool read_parts(dvi_scene *scene, const dvi__tree *file, const char *path
   if (division == NULL || division->read == NULL)
     return dvi__complain(scene->complaint, DVI_UNSUPPORTED, file->span,
                          "several processes read '%s' in parts (mpirun -np 2 dvi run); for one "
-                         "process take a file of MSH, OFF or PLY",
+                         "process dvi mesh writes a file of MSH, OFF or PLY of it",
                          file->text);
   return report_file(scene, file, division->read(path, &scene->field->mesh, division->user));
 }
@@ -173,10 +173,13 @@ static bool take_share(dvi_scene *scene, const dvi__tree *section)
   if (scene->division == NULL) return true;
   if (f->is_grid && f->maxwell != NULL) f->ranks = scene->division->grid;
   if (f->mesh == NULL && f->ranks != NULL) return true;
-  if (f->mesh == NULL || dvi__has_density(scene))
+  if (dvi__has_density(scene))
+    return dvi__complain(scene->complaint, DVI_UNSUPPORTED, dvi__motion_section(scene)->span,
+                         "several processes share fields of waves, Maxwell's and solids, and no "
+                         "densities: run this one in one process");
+  if (f->mesh == NULL)
     return dvi__complain(scene->complaint, DVI_UNSUPPORTED, section->span,
-                         "several processes share fields of waves, Maxwell's and solids on meshes, "
-                         "and no grids of yee and densities");
+                         "several processes share a grid of yee if their division has its ranks");
   if (dvi_mesh_share_numbers(f->mesh, 0) != NULL) return true;
   if (!report(scene, section, scene->division->divide(f->mesh, &share, scene->division->user)))
     return false;
