@@ -126,7 +126,7 @@ static void fill_plane(const dvi_yee_terms *terms, dvi_march_form form, int comp
                        const int *at, const layout *of, const gathered *g)
 {
   const int last = terms->axes - 1;
-  const int64_t row = of->next[1], rows = of->next[last] / row;
+  const int64_t row = of->next[1], rows = row > 0 ? of->next[last] / row : 0;
   int index[3] = {0};
   index[last] = at[last];
   for (int64_t j = 0; j < rows; j++) {
