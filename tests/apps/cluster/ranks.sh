@@ -44,6 +44,9 @@ sed 's/^mesh: .*/mesh: {generator: kuhn, cells: [40], size: [1]}/
   /^ *all:/d; /^materials/d; s/exp(.*)/exp(-30*(x - 0.4)^2)/' wave.yaml >string.yaml
 drawn 2 pvd u.pvd wave.yaml --every 10
 drawn 4 pvd u.pvd block.yaml --every 5
+drawn 3 pvd u.pvd grid.yaml --every 10
+sed -e 's/^boundary:.*/boundary: periodic/' -e '/^ *s: /d' grid.yaml >around.yaml
+drawn 2 pvd u.pvd around.yaml --every 10 # a grid small enough for a mesh, which processes share
 drawn 3 map u.svg string.yaml
 drawn 2 map u.svg string.yaml --map-of u
 "$dvi" mesh bcc-torus --cells 3,3,3 --size 1,1,1 --write torus.h5 >out || fail "no torus.h5"
@@ -57,10 +60,10 @@ if [ -e "$modules/dvi_hdf5.so" ]; then
   drawn 3 pvd u.vtkhdf torus.yaml --every 12
   drawn 2 pvd u.vtkhdf block.yaml --every 5
   drawn 2 pvd u.vtkhdf wave.yaml --every 10
+  drawn 4 pvd u.vtkhdf grid.yaml --every 10
   together 1 'cannot write' wave.yaml --out rows.csv --pvd /nowhere/u.vtkhdf
 fi
 together 1 'cannot write' wave.yaml --out rows.csv --pvd /nowhere/u.pvd
-together 2 'pvd of a grid is written by one process' grid.yaml --pvd u.pvd
 together 2 'the name ends in .pvd' wave.yaml --pvd u.vtu
 together 2 'is on a mesh of more dimensions' wave.yaml --map u.svg
 
@@ -143,10 +146,10 @@ by 2 curl.yaml --method midpoint --h 0.1 --final >out || fail 'no start from B b
 goes_on() {
   first=$1 second=$2 file=part.$rows
   shift 2
-  rm -f "$file" a.state
-  by "$first" "$@" --t-end 0.4 --out $file --checkpoint a.state || fail "$*: $first fail"
-  same half.state a.state "$*: the checkpoint of $first"
-  by "$second" "$@" --t-end 1 --out $file --resume a.state || fail "$*: $second do not go on"
+  rm -f "$file" "a.$state"
+  by "$first" "$@" --t-end 0.4 --out $file --checkpoint "a.$state" || fail "$*: $first fail"
+  same "half.$state" "a.$state" "$*: the checkpoint of $first"
+  by "$second" "$@" --t-end 1 --out $file --resume "a.$state" || fail "$*: $second do not go on"
   if [ $rows = h5 ]; then
     "$dvi" plot $file --out part.svg >/dev/null 2>&1
     h5diff whole.h5 part.h5 rows || fail "$*: $first and then $second have other rows"
@@ -160,7 +163,7 @@ goes_on() {
 every_way() {
   by 1 "$@" --t-end 0.4 --out half.csv --checkpoint half.state || fail "$*: no checkpoint"
   by 1 "$@" --t-end 1 --out whole.csv || fail "$*: no run"
-  rows=csv
+  rows=csv state=state
   goes_on 1 3 "$@"
   goes_on 3 1 "$@"
   goes_on 2 4 "$@"
@@ -173,6 +176,29 @@ every_way() {
 every_way wave.yaml --h 0.002 --every 4
 every_way grid.yaml --h 0.01 --every 5
 every_way solid.yaml --h 0.004 --every 5 --method verlet
+
+# in_parts SCENE OPTION...: the same with states in parts.
+in_parts() {
+  by 1 "$@" --t-end 0.4 --out half.csv --checkpoint half.h5 || fail "$*: no state in parts"
+  by 1 "$@" --t-end 1 --out whole.csv || fail "$*: no run"
+  rows=csv state=h5
+  goes_on 1 3 "$@"
+  goes_on 3 1 "$@"
+  goes_on 2 4 "$@"
+}
+in_parts block.yaml --h 0.01 --every 5
+in_parts wave.yaml --h 0.002 --every 4
+by 2 kink.yaml --method midpoint --h 0.05 --t-end 0.5 --out half.csv --checkpoint kink.h5
+by 3 kink.yaml --method midpoint --h 0.05 --t-end 1 --out rest.csv --resume kink.h5
+by 2 kink.yaml --method midpoint --h 0.05 --t-end 1 --out whole.csv
+{ cat half.csv; sed 1,2d rest.csv; } >joined.csv
+same whole.csv joined.csv 'midpoint in parts'
+cp half.state old.h5
+head -c 3000 half.h5 >cut.h5
+together 1 'it is no file of HDF5' wave.yaml --h 0.002 --resume old.h5
+together 1 'cut short' wave.yaml --h 0.002 --resume cut.h5
+together 1 'is of another field' wave.yaml --h 0.001 --resume half.h5
+together 2 'is a state in parts by its name.*and yee has not' grid.yaml --checkpoint a.h5
 every_way torus.yaml --h 0.004 --every 5
 together 1 'cannot read' wave.yaml --resume nowhere
 together 2 'half.state. stands at t = ' torus.yaml --h 0.004 --t-end 0.1 --resume half.state

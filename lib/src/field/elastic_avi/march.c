@@ -205,7 +205,7 @@ static dvi_status check_share(const dvi_elastic *e, const dvi__solid_request *re
     .name = called, .destroy = destroy, .start = start, .advance = advance, .time = time, \
     .size = size, .sample = sample, .observables = observables, .observable = observable, \
     .observe = observe, .facts = facts, .save = save, .load = load, .agree = agree,       \
-    .writes = writes, .is_lost = is_lost,                                                 \
+    .writes = writes, .is_lost = is_lost, .has_parts = 1,                                 \
   }
 
 static const dvi__march_kind kind_avi = KIND("avi"), kind_verlet = KIND("verlet");

@@ -267,6 +267,7 @@ static dvi_status make(dvi__implicit_march *m)
     .size = size, .sample = dvi__implicit_sample, .observables = dvi__implicit_observables,   \
     .observable = dvi__implicit_observable, .observe = dvi__implicit_observe, .facts = facts, \
     .save = save, .load = load, .agree = agree, .writes = writes, .is_lost = is_lost,         \
+    .has_parts = 1,                                                                           \
   }
 
 static const dvi__march_kind kinds[] = {[DVI__IMPLICIT_MIDPOINT] = KIND("midpoint"),
