@@ -17,6 +17,7 @@ as_one 2 probes.yaml
 as_one 4 grid.yaml
 columns=energy,growth,momentum_x,angular_z,tip_z,middle
 as_one 2 solid.yaml --columns $columns
+as_one 3 solid.yaml --columns $columns --threads 2
 as_one 4 solid.yaml --columns $columns --method verlet
 as_one 3 solid.yaml --columns $columns --method avi:classes=no
 sed -e 's/{cpml: 2}/absorbing/' \
@@ -258,11 +259,11 @@ edited() {
   sed "$2" "$1" >edited.yaml
   together 2 "edited.yaml:$3: .*$4" edited.yaml
 }
-edited wave.yaml 's/^method: .*/method: yee/' 7:9 'midpoint, imex and galerkin alone, not yee'
+edited wave.yaml 's/^method: .*/method: yee/' 7:9 'imex and galerkin alone, not yee; take l'
 edited wave.yaml 's/^boundary.*/&\nstar: barycentric/' 6:7 'not diagonal .* take midpoint, the c'
 edited wave.yaml 's/^boundary.*/&\ndamping: 0.1/' 6:10 'takes the friction in one process'
 edited torus.yaml 's/^field.*/&\nstar: whitney/' 3:7 'not diagonal .* take the circumcentric star'
-edited torus.yaml 's/{E: .*/{B: [0, 0, 1]}/' 5:10 'take a start by A, or one process'
+edited torus.yaml 's/{E: .*/{B: [0, 0, 1]}/' 5:10 'no potential has this field B'
 edited solid.yaml 's/alpha: 0.1/beta: 0.1/' 3:12 'a damping beta .* take one process'
 edited wave.yaml 's/^field: .*/space: fem:degree=1\nfields: {u: scalar}\ndensity: u'"'"'^2\/2/
   /^ *all/d; /^materials/d; s/fixed/free/; s/leapfrog/midpoint/; s/{fraction: 0.5}/0.1/' 4:10 \
