@@ -25,7 +25,8 @@ typedef struct dvi_march_options {
   size_t size; /**< sizeof(dvi_march_options) */
   /** The method, with its options: "leapfrog" (default), "avi", "avi:classes=no", "tents",
    *  "tents:least=0.5,seed=3" (docs/fields/maxwell.md). "bossavit-kettunen" is another name of
-   *  leapfrog */
+   *  leapfrog. On shares also "midpoint", and of waves "imex" and "galerkin:degree=1" or 2
+   *  (docs/fields/implicit-shares.md) */
   const char *method;
   double step;     /**< the step, above 0. Default: `fraction` of the largest stable one */
   double fraction; /**< of the largest stable step, or of each local one. Default: 0.5 */
