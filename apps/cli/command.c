@@ -95,9 +95,14 @@ void complain_of(dvi_status status, const char *before, const char *after)
   complain("%s%s%s", before, sentence, after);
 }
 
+bool library_failed_elsewhere(void)
+{
+  return strstr(dvi_last_error(), "sentence tells why") != NULL;
+}
+
 int library_error(dvi_status status)
 {
-  complain_of(status, "", "");
+  if (!library_failed_elsewhere()) complain_of(status, "", "");
   return status == DVI_BAD_OPTION || status == DVI_UNSUPPORTED ? USAGE : FAILED;
 }
 

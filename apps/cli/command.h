@@ -46,7 +46,11 @@ void complain(const char *format, ...) __attribute__((format(printf, 1, 2)));
 /** Complain, and return USAGE. */
 int usage_error(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
-/** Complain with the library's last sentence, and return the exit code that fits the status. */
+/** Tell if the library's last sentence is that another process has failed, whose own tells why. */
+bool library_failed_elsewhere(void);
+
+/** Complain with the library's last sentence, unless another process's tells why, and return the
+ * exit code that fits the status. */
 int library_error(dvi_status status);
 
 /** Complain with the library's last sentence between two texts. If an expression of a scene is the
