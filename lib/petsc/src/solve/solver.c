@@ -30,9 +30,9 @@ typedef struct solver {
   dvi__edges *edges;         /* or of edges */
   dvi__pair pair;            /* of equations of pairs */
   dvi__scale scale;
-  int numbers;               /* of each unknown, 1 or 2 */
-  double *x, *r;             /* [numbers*unknowns] */
-  PetscScalar *diagonal;     /* [numbers*own] of the Jacobian beside A */
+  int numbers;           /* of each unknown, 1 or 2 */
+  double *x, *r;         /* [numbers*unknowns] */
+  PetscScalar *diagonal; /* [numbers*own] of the Jacobian beside A */
   SNES snes;
   Mat jacobian;
   Vec solution, residual;
@@ -218,8 +218,7 @@ static PetscErrorCode end_newton(SNES snes, PetscInt iteration, PetscReal size,
   if (residual <= s->equations.rounding) *reason = SNES_CONVERGED_FNORM_ABS;
   if (iteration == 0) return 0;
   const double shrunk = iteration > 1 ? fmax(s->last / s->before, part_left) : 1;
-  if (shrunk * s->last <= DBL_EPSILON * s->size ||
-      (shrunk > 0.5 && s->last <= settled * s->size))
+  if (shrunk * s->last <= DBL_EPSILON * s->size || (shrunk > 0.5 && s->last <= settled * s->size))
     *reason = SNES_CONVERGED_SNORM_RELATIVE;
   else if (residual != 0 && iteration == CORRECTIONS)
     *reason = SNES_DIVERGED_MAX_IT;
@@ -282,8 +281,8 @@ static PetscErrorCode make_newton(solver *s)
   PetscCall(SNESSetFunction(s->snes, s->residual, evaluate, s));
   PetscCall(SNESSetJacobian(s->snes, s->jacobian, s->jacobian, linearize, s));
   PetscCall(SNESSetConvergenceTest(s->snes, end_newton, s, NULL));
-  PetscCall(SNESSetTolerances(s->snes, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT,
-                              CORRECTIONS + 1, 10 * CORRECTIONS));
+  PetscCall(SNESSetTolerances(s->snes, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT, CORRECTIONS + 1,
+                              10 * CORRECTIONS));
   return make_gradients(s);
 }
 

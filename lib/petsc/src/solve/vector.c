@@ -56,7 +56,7 @@ static PetscErrorCode sum_of_sizes(Vec x, PetscReal *value)
   return dvi__sum_of_world(PetscObjectComm((PetscObject)x), &sum, value);
 }
 
-/* Where squares vanish or overflow, take those of numbers that a power of two has brought near 1. */
+/* Where squares vanish or overflow, take those of numbers that a power of two brings near 1. */
 static PetscErrorCode norm_by_scale(Vec x, PetscReal *value)
 {
   const PetscScalar *a;
