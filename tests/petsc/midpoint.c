@@ -258,6 +258,34 @@ static void check_scales(const char *method)
   end(&w);
 }
 
+/* A start whose momenta are no numbers is refused, and the march is lost until the next one. */
+static void check_overflow(void)
+{
+  const dvi_generator_options options = {
+      .size = sizeof options, .cells = {6, 6}, .extent = {600, 600}};
+  const dvi_march_options how = {.size = sizeof how, .method = "midpoint", .step = 1};
+  const dvi_march_state rest = {.size = sizeof rest};
+  wave w = {.march = NULL};
+  double energy = 1;
+  expect(dvi_mesh_generate("box", &options, &w.mesh) == DVI_OK, "no mesh", waves);
+  expect(dvi_mesh_divide(w.mesh, NULL, &w.share, &w.division) == DVI_OK, "no division", waves);
+  w.field = make_field(w.share, 0);
+  expect(dvi_march_create(w.field, &how, &w.march) == DVI_OK, "no march", waves);
+  const int64_t here = dvi_mesh_count(w.share, 0);
+  double *E = DVI_NEW(double, here);
+  for (int64_t v = 0; v < here; v++) E[v] = 1e306;
+  const dvi_march_state fast = {.size = sizeof fast, .E = E};
+  expect(dvi_march_start(w.march, &fast) == DVI_NOT_FINITE, "an overflow is not seen", waves);
+  expect(strstr(dvi_last_error(), "overflowed to -inf at vertex") != NULL, "no sentence", waves);
+  expect(dvi_march_observe(w.march, 0, &energy) == DVI_BAD_STATE, "a lost state is seen", waves);
+  expect(dvi_march_advance(w.march, 1) == DVI_BAD_STATE, "a lost state moves", waves);
+  expect(dvi_march_start(w.march, &rest) == DVI_OK, "no start at rest", waves);
+  move(w.march, 2);
+  expect(energy_of(w.march) == 0, "no rest", waves);
+  dvi__release(E);
+  end(&w);
+}
+
 /* ---- what a step costs ---- */
 
 /* The library allocates nothing in a step. PETSc has a block for each solution, and one for each
@@ -298,6 +326,7 @@ int main(int argc, char **argv)
   check_scales("midpoint");
   check_scales("imex");
   check_scales("galerkin:degree=2");
+  check_overflow();
   if (argc > 1 && strcmp(argv[1], "all") == 0) {
     check_drift(10000, 1.2e-13);
     check_drift(100000, 1.2e-12);

@@ -12,6 +12,7 @@
 #include "field/implicit/state.h"
 #include "field/mesh/share.h"
 #include "field/step/saved.h"
+#include "field/step/terms.h"
 
 /* ---- steps ---- */
 
@@ -78,9 +79,8 @@ static dvi_status step_aside(dvi__implicit_march *m, double h)
   return take(m, h, m->shorter);
 }
 
-static dvi_status advance(void *self, double t)
+static dvi_status move_to(dvi__implicit_march *m, double t)
 {
-  dvi__implicit_march *m = self;
   const double rounding = 8 * DBL_EPSILON * fmax(fabs(t), fabs(m->at.t0));
   while (time_of(m, m->at.n + 1) <= t + rounding) DVI_TRY(step(m));
   if (t > m->last.t + rounding)
@@ -89,6 +89,27 @@ static dvi_status advance(void *self, double t)
     copy(m, &m->last, &m->shown);
   m->at.t = m->shown.t = t;
   return DVI_OK;
+}
+
+/* What has overflowed once stays, so that it is enough to look where the state can be seen. */
+static dvi_status check_overflow(dvi__implicit_march *m)
+{
+  const dvi_field *f = m->field;
+  const dvi__implicit_state *s = &m->shown;
+  dvi_status status = dvi__check_finite(f, "A", s->q, s->t);
+  if (status == DVI_OK) status = dvi__check_finite(f, "the momentum", s->p, s->t);
+  status = dvi__agree(f->mesh, status);
+  if (status != DVI_OK) m->is_lost = 1;
+  return status;
+}
+
+static dvi_status advance(void *self, double t)
+{
+  dvi__implicit_march *m = self;
+  const dvi_status status = move_to(m, t);
+  if (m->is_lost) return status;
+  const dvi_status overflow = check_overflow(m);
+  return overflow != DVI_OK ? overflow : status;
 }
 
 /* ---- a start ---- */
@@ -134,6 +155,7 @@ static dvi_status start(void *self, const dvi_march_state *state)
   if (status == DVI_OK) status = fill_B(m, state->B, &m->last);
   m->is_lost = status != DVI_OK;
   copy(m, &m->last, &m->shown);
+  if (status == DVI_OK) status = check_overflow(m);
   if (status == DVI_OK) dvi__implicit_begin_charge(m);
   return status;
 }

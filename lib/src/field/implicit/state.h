@@ -18,7 +18,7 @@ typedef struct dvi__implicit_march {
   dvi__implicit_state last, shown; /* at t_n, and at the march's time */
   dvi__charge charge;
   double *E, *spare; /* [cells] */
-  int is_lost;       /* processes could not give each other their values */
+  int is_lost;       /* values have overflowed, or processes could not exchange them */
 } dvi__implicit_march;
 
 /* Take the charge of what is shown as that of the start. */
