@@ -34,7 +34,8 @@ grep -q '^shares: 324 cells among 3 processes by [a-z]*, 10[0-9] to 1[0-9]* each
 # There are so few unknowns that no level is coarser, and an iteration has a product alone.
 explained 3 wave.yaml --method midpoint --h 0.05
 says out.txt '^counted in the first step: [1-9].* corrections of [1-9]' midpoint
-says out.txt '^counted in an iteration: .*, 2 sums, 1 gatherings$' midpoint
+# PETSc 3.22 has a sum of its own in each.
+says out.txt '^counted in an iteration: .*, [23] sums, 1 gatherings$' midpoint
 # The components of three axes are exchanged one after the other.
 explained 2 bar.yaml --method verlet
 says out.txt ' 6 messages together$' verlet
