@@ -43,6 +43,10 @@ char *command_spelled(const char *name, int argc, char *const *argv);
 /** Print "dvi: <sentence>" to standard error. */
 void complain(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
+/** Return whether a sentence only says that another process has failed. `complain` and its like
+ * leave it out, because that process tells why. */
+bool is_echo(const char *sentence);
+
 /** Complain, and return USAGE. */
 int usage_error(const char *format, ...) __attribute__((format(printf, 1, 2)));
 

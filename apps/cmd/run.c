@@ -334,7 +334,10 @@ static const char *const details[] = {
     "potentials 10 % are told. The exit code is 0 all the same.\n",
     "mpirun -np N dvi run SCENE.yaml: N processes share the mesh of a wave, of Maxwell's field or "
     "of a solid, or a grid of yee.\n"
-    "The rows are those of one process (docs/fields/processes.md).\n",
+    "The rows are those of one process, by midpoint, imex and galerkin up to roundoff. A mesh that "
+    "is too large for one\n"
+    "process is read in parts from the file of dvi mesh FILE --write mesh.h5 "
+    "(docs/fields/processes.md).\n",
     "--verify runs the whole job with h, h/2 and h/4, and, for up to 500 coordinates, by IDA, "
     "where that takes no longer than\n"
     "these runs, or 2 s, and prints for each column its value at the end with h, an estimate of "

@@ -18,7 +18,7 @@ static const char module_name[] = "dvi_petsc.so", symbol_name[] = "dvi_petsc";
 static const char ended_first[] =
     "dvi: a signal came before all processes had been started; nothing was written\n";
 
-static bool is_echo;               /* this process fails because another one did */
+static bool has_followed;          /* this process fails because another one did */
 static const petsc_module *module; /* NULL in a process that is alone */
 static int own_rank, rank_count = 1;
 static FILE *kept;      /* what a process prints that is not the first one */
@@ -168,7 +168,7 @@ int ranks_largest(int number)
 int ranks_agree(int code)
 {
   const int worst = largest(code, code != DONE);
-  is_echo = code == DONE && worst != DONE;
+  has_followed = code == DONE && worst != DONE;
   return code != DONE ? code : worst;
 }
 
@@ -244,7 +244,7 @@ int ranks_rest(int code)
 {
   int worst = code;
   if (!module->rest(code, &worst)) abandon(code != DONE ? code : FAILED);
-  is_echo = code == DONE && worst != DONE;
+  has_followed = code == DONE && worst != DONE;
   return code != DONE ? code : worst;
 }
 
@@ -295,8 +295,7 @@ static int find_culprit(const rank_end *all)
 int ranks_end(int code)
 {
   if (module == NULL) return code;
-  const rank_end own = {
-      .code = code, .is_echo = is_echo || strstr(dvi_last_error(), "sentence tells why") != NULL};
+  const rank_end own = {.code = code, .is_echo = has_followed || is_echo(dvi_last_error())};
   rank_end *all = calloc((size_t)rank_count, sizeof *all);
   (void)fflush(stderr);
   (void)fflush(stdout);

@@ -6,6 +6,7 @@
  * their planes in memory one after the other, and two neighbours only, and are taken as long as
  * they are thick. Otherwise the division is the one with the least surface. */
 #include <math.h>
+#include <stdio.h>
 
 #include "core/status.h"
 #include "field/yee/ranks.h"
@@ -75,6 +76,18 @@ static int choose_parts(const dvi_yee_ranks *r, dvi__yee *y)
   return isfinite(least);
 }
 
+static dvi_status refuse_parts(const dvi_yee_ranks *r, const dvi__yee *y)
+{
+  char parts[96] = "";
+  if (r->parts[0] != 0 || r->parts[1] != 0 || r->parts[2] != 0)
+    (void)snprintf(parts, sizeof parts, " by %d x %d x %d parts, where 0 is any number,",
+                   r->parts[0], r->parts[1], r->parts[2]);
+  return dvi__fail(DVI_BAD_ARGUMENT,
+                   "yee: %d x %d x %d boxes cannot be divided among %d processes%s so that each of "
+                   "them has 2 boxes of y and of z; run fewer processes",
+                   y->axis[0].cells, y->axis[1].cells, y->axis[2].cells, r->count, parts);
+}
+
 static dvi_status take_parts(const dvi_yee_ranks *r, dvi__yee *y)
 {
   DVI_TRY(check_ranks(r));
@@ -82,13 +95,7 @@ static dvi_status take_parts(const dvi_yee_ranks *r, dvi__yee *y)
     return dvi__fail(DVI_UNSUPPORTED,
                      "yee: a grid of one axis cannot be divided among %d processes; run it on one",
                      r->count);
-  if (!choose_parts(r, y))
-    return dvi__fail(DVI_BAD_ARGUMENT,
-                     "yee: %d x %d x %d boxes cannot be divided among %d processes by %d x %d x %d "
-                     "parts, where 0 is any number, so that each of them has 2 boxes of y and of "
-                     "z; run fewer processes",
-                     y->axis[0].cells, y->axis[1].cells, y->axis[2].cells, r->count, r->parts[0],
-                     r->parts[1], r->parts[2]);
+  if (!choose_parts(r, y)) return refuse_parts(r, y);
   y->part[2] = (int)((int64_t)r->rank * y->parts[2] / r->count);
   y->part[1] = r->rank - y->part[2] * y->parts[1];
   return DVI_OK;
