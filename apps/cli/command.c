@@ -9,18 +9,11 @@
 
 enum { SENTENCE_SIZE = 2048 };
 
-bool is_echo(const char *sentence)
-{
-  return strstr(sentence, "sentence tells why") != NULL;
-}
-
-/* Print a sentence. One that is too long for its memory is cut. What only says that another process
- * has failed is left to that process (ranks_end). */
+/* Print a sentence. One that is too long for its memory is cut. */
 static void print_sentence(const char *format, va_list arguments)
 {
   char sentence[SENTENCE_SIZE];
   (void)vsnprintf(sentence, sizeof sentence, format, arguments);
-  if (is_echo(sentence)) return;
   (void)fprintf(stderr, "dvi: %s\n", sentence);
 }
 
@@ -102,9 +95,14 @@ void complain_of(dvi_status status, const char *before, const char *after)
   complain("%s%s%s", before, sentence, after);
 }
 
+bool library_failed_elsewhere(void)
+{
+  return strstr(dvi_last_error(), "sentence tells why") != NULL;
+}
+
 int library_error(dvi_status status)
 {
-  complain_of(status, "", "");
+  if (!library_failed_elsewhere()) complain_of(status, "", "");
   return status == DVI_BAD_OPTION || status == DVI_UNSUPPORTED ? USAGE : FAILED;
 }
 

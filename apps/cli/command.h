@@ -43,14 +43,14 @@ char *command_spelled(const char *name, int argc, char *const *argv);
 /** Print "dvi: <sentence>" to standard error. */
 void complain(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
-/** Return whether a sentence only says that another process has failed. `complain` and its like
- * leave it out, because that process tells why. */
-bool is_echo(const char *sentence);
-
 /** Complain, and return USAGE. */
 int usage_error(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
-/** Complain with the library's last sentence, and return the exit code that fits the status. */
+/** Tell if the library's last sentence is that another process has failed, whose own tells why. */
+bool library_failed_elsewhere(void);
+
+/** Complain with the library's last sentence, unless another process's tells why, and return the
+ * exit code that fits the status. */
 int library_error(dvi_status status);
 
 /** Complain with the library's last sentence between two texts. If an expression of a scene is the

@@ -239,7 +239,7 @@ static const char *const details[] = {
     "The mesh is that of a generator: "
     "interval, box, kuhn, kuhn-torus, staggered, bcc-torus, disk, annulus, icosphere, torus, "
     "genus-2, cylinder, ball, simplex-4, simplex-5, cell-16, cell-600, cross-5. Or it is read from "
-    "a file: MSH 2.2 or 4.1, OFF, PLY.\n",
+    "a file: MSH 2.2 or 4.1, OFF, PLY, or FILE.h5 of --write.\n",
     "A row for the cells of each degree k: how many; Betti numbers, which count holes; volumes; "
     "circumcentric dual cells of no and of negative volume; the least entry of the star M_k; the "
     "longest stable step of leapfrog on k-forms; steps for the mesh's length at speed 1.\n",

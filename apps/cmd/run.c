@@ -120,10 +120,23 @@ static int complete_request(run_request *request, const problem *scene, double t
                    request->how.transform == NULL && request->how.control == NULL);
 }
 
+/* Refuse the names of states in parts, which mechanical systems do not have. */
+static int check_states(const run_request *request)
+{
+  const char *const path[] = {request->checkpoint, request->resume};
+  for (int i = 0; i < 2; i++)
+    if (ranks_part_state(path[i]))
+      return usage_error("run: '%s' is a state in parts by its name, which marches of fields on "
+                         "meshes have, and %s has not; give another name",
+                         path[i], request->method);
+  return DONE;
+}
+
 static int run_integrator(run_request *request, const problem *scene)
 {
   dvi_integrator *integrator = NULL;
-  int code = open_paced(scene, request->method, &request->how, &integrator);
+  int code = check_states(request);
+  if (code == DONE) code = open_paced(scene, request->method, &request->how, &integrator);
   if (code == DONE && !place_start(request, scene, integrator)) code = FAILED;
   if (code == DONE) code = complete_request(request, scene, dvi_integrator_time(integrator));
   if (code == DONE && request->resume == NULL && request->how.transform == NULL)
@@ -480,7 +493,9 @@ static const option command_options[] = {
     {.name = "checkpoint",
      OPTION_AT(run_request, checkpoint),
      .value = "FILE",
-     .help = "save the state there when the run ends, however it ends"},
+     .help =
+         "save the state there when the run ends, however it ends; of fields on meshes in parts "
+         "if the name ends in .h5"},
     {.name = "checkpoint-every",
      OPTION_AT(run_request, checkpoint_every),
      .value = "K",

@@ -22,7 +22,7 @@ int frames_start(frame_list *frames, const char *scene, const dvi_mesh *mesh, co
   if (path == NULL) return DONE;
   if (!ends_with(path, ending) && !ends_with(path, ending_of_one))
     return usage_error("run: --pvd %s: the name ends in .pvd or .vtkhdf", path);
-  if (mesh == NULL)
+  if (mesh == NULL && ranks_is_first())
     return usage_error("run: --pvd is for fields on meshes, and %s has none", scene);
   frames->mesh = mesh;
   if (ranks_is_first() && ends_with(path, ending_of_one) && store_module(path) == NULL)
@@ -40,6 +40,13 @@ void frames_move(frame_list *frames, const dvi_mesh *mesh, const double *point)
 bool frames_are_wanted(const frame_list *frames)
 {
   return frames->path != NULL;
+}
+
+/* Tell if all processes write views of their shares together. Otherwise the first one, or the only
+ * one, has all of them. */
+static bool is_shared(const frame_list *frames)
+{
+  return frames->mesh != NULL && dvi_mesh_share_owners(frames->mesh, 0) != NULL;
 }
 
 /* Make room for one more file. */
@@ -93,7 +100,8 @@ static char *next_path(frame_list *frames, double t)
 static bool add_file(frame_list *frames, double t, int views, const dvi_view *view)
 {
   char *path = next_path(frames, t);
-  if (ranks_agree(path != NULL ? DONE : FAILED) != DONE) {
+  const int code = path != NULL ? DONE : FAILED;
+  if ((is_shared(frames) ? ranks_agree(code) : code) != DONE) {
     free(path);
     return false;
   }
@@ -105,9 +113,12 @@ static bool add_file(frame_list *frames, double t, int views, const dvi_view *vi
 bool frames_add(frame_list *frames, double t, int views, const dvi_view *view)
 {
   const frame_place place = {frames->path, frames->head, frames->point, t};
-  return ends_with(frames->path, ending_of_one)
-             ? stored_views_add(&frames->stored, &place, frames->mesh, views, view)
-             : add_file(frames, t, views, view);
+  bool good = true;
+  if (is_shared(frames) || ranks_is_first())
+    good = ends_with(frames->path, ending_of_one)
+               ? stored_views_add(&frames->stored, &place, frames->mesh, views, view)
+               : add_file(frames, t, views, view);
+  return ranks_agree(good ? DONE : FAILED) == DONE;
 }
 
 bool frames_keep(frame_list *frames)

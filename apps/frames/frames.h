@@ -9,7 +9,8 @@
 
 /** The files so far. All zero without any. */
 typedef struct frame_list {
-  const dvi_mesh *mesh;  /**< of all views, or of the next ones if it moves */
+  /** of all views, or of the next ones if it moves. NULL in a process that writes none */
+  const dvi_mesh *mesh;
   const double *point;   /**< its points, if it moves, otherwise NULL */
   const char *path;      /**< of the list of files, FILE.pvd, or of the only one, FILE.vtkhdf */
   const hdf5_head *head; /**< of FILE.vtkhdf */
@@ -19,7 +20,8 @@ typedef struct frame_list {
   char **name;  /**< [count] FILE_000000.vtu and so on, without folder */
 } frame_list;
 
-/** Prepare for views on a mesh, or for none if the path is NULL. Returns DONE, or complains and
+/** Prepare for views on a mesh, or for none if the path is NULL. If the mesh is no share, only the
+ * first of several processes has it and writes. Returns DONE, or complains and
  * returns the exit code. */
 int frames_start(frame_list *frames, const char *scene, const dvi_mesh *mesh, const char *path);
 
@@ -29,8 +31,8 @@ void frames_move(frame_list *frames, const dvi_mesh *mesh, const double *point);
 /** Return whether views are written. */
 bool frames_are_wanted(const frame_list *frames);
 
-/** Write views at a time. Of several processes all call it with those of their shares, and the
- * first one writes. Complains and returns false if that fails, on all of them. */
+/** Write views at a time. Of several processes all call it, with those of their shares if the mesh
+ * is one. The first one writes. Complains and returns false if that fails, on all of them. */
 bool frames_add(frame_list *frames, double t, int views, const dvi_view *view);
 
 /** Write the list of all files, or close the only one. Complains and returns false if that

@@ -197,7 +197,8 @@ static bool add_shares(stored_views *stored, const frame_place *place, const dvi
 bool stored_views_add(stored_views *stored, const frame_place *place, const dvi_mesh *mesh,
                       int views, const dvi_view *view)
 {
-  return (ranks_count() > 1 ? add_shares : add_whole)(stored, place, mesh, views, view);
+  return (dvi_mesh_share_owners(mesh, 0) != NULL ? add_shares : add_whole)(stored, place, mesh,
+                                                                           views, view);
 }
 
 bool stored_views_close(stored_views *stored, const char *path)

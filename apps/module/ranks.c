@@ -18,8 +18,9 @@ static const char module_name[] = "dvi_petsc.so", symbol_name[] = "dvi_petsc";
 static const char ended_first[] =
     "dvi: a signal came before all processes had been started; nothing was written\n";
 
-static bool has_followed;          /* this process fails because another one did */
+static bool is_echo;               /* this process fails because another one did */
 static const petsc_module *module; /* NULL in a process that is alone */
+static const petsc_module *writer; /* which may be there without others, too */
 static int own_rank, rank_count = 1;
 static FILE *kept;      /* what a process prints that is not the first one */
 static int spoken = -1; /* its standard error */
@@ -168,7 +169,7 @@ int ranks_largest(int number)
 int ranks_agree(int code)
 {
   const int worst = largest(code, code != DONE);
-  has_followed = code == DONE && worst != DONE;
+  is_echo = code == DONE && worst != DONE;
   return code != DONE ? code : worst;
 }
 
@@ -199,15 +200,45 @@ int ranks_read_mesh(const char *path, dvi_mesh **mesh)
   return status == DVI_OK ? DONE : library_error(status);
 }
 
+/* Load what writes files in parts. */
+static int load_writer(const char *path, const char *what)
+{
+  if (writer == NULL) writer = module != NULL ? module : load();
+  return writer != NULL
+             ? DONE
+             : usage_error("'%s' is a %s that several processes read in parts, and this dvi has no "
+                           "module for it (%s); build dvi with -DDVI_PETSC=ON",
+                           path, what, dlerror());
+}
+
 int ranks_write_mesh(const dvi_mesh *mesh, const char *path)
 {
-  const petsc_module *writer = load();
-  if (writer == NULL)
-    return usage_error("'%s' is a mesh that several processes read in parts, and this dvi has no "
-                       "module for it (%s); build dvi with -DDVI_PETSC=ON",
-                       path, dlerror());
+  const int code = load_writer(path, "mesh");
+  if (code != DONE) return code;
   const dvi_status status = writer->write(mesh, path);
   return status == DVI_OK ? DONE : library_error(status);
+}
+
+bool ranks_part_state(const char *path)
+{
+  static const char ending[] = ".h5";
+  const size_t length = path != NULL ? strlen(path) : 0, end = sizeof ending - 1;
+  return length > end && strcmp(path + length - end, ending) == 0;
+}
+
+int ranks_prepare_state(const char *path)
+{
+  return ranks_part_state(path) ? load_writer(path, "state") : DONE;
+}
+
+dvi_status ranks_save(const dvi_march *march, const char *path)
+{
+  return ranks_part_state(path) ? writer->save(march, path) : dvi_march_save(march, path);
+}
+
+dvi_status ranks_load(dvi_march *march, const char *path)
+{
+  return ranks_part_state(path) ? writer->load(march, path) : dvi_march_load(march, path);
 }
 
 const dvi_yee_ranks *ranks_grid(void)
@@ -244,7 +275,7 @@ int ranks_rest(int code)
 {
   int worst = code;
   if (!module->rest(code, &worst)) abandon(code != DONE ? code : FAILED);
-  has_followed = code == DONE && worst != DONE;
+  is_echo = code == DONE && worst != DONE;
   return code != DONE ? code : worst;
 }
 
@@ -295,7 +326,7 @@ static int find_culprit(const rank_end *all)
 int ranks_end(int code)
 {
   if (module == NULL) return code;
-  const rank_end own = {.code = code, .is_echo = has_followed || is_echo(dvi_last_error())};
+  const rank_end own = {.code = code, .is_echo = is_echo || library_failed_elsewhere()};
   rank_end *all = calloc((size_t)rank_count, sizeof *all);
   (void)fflush(stderr);
   (void)fflush(stdout);

@@ -51,6 +51,17 @@ int ranks_read_mesh(const char *path, dvi_mesh **mesh);
 /** Write a mesh to such a file. Returns DONE, or complains and returns the exit code. */
 int ranks_write_mesh(const dvi_mesh *mesh, const char *path);
 
+/** Tell if a state is written in parts, because the file's name ends in .h5. NULL is none. */
+bool ranks_part_state(const char *path);
+
+/** Get ready for such a state. Returns DONE, or complains and returns the exit code. */
+int ranks_prepare_state(const char *path);
+
+/** Save and load the state of a march on the mesh that was divided last, or on a whole one, in
+ *  parts if ranks_part_state says so, after ranks_prepare_state. Called by all processes. */
+dvi_status ranks_save(const dvi_march *march, const char *path);
+dvi_status ranks_load(dvi_march *march, const char *path);
+
 /** Give what divides grids among the processes, NULL without others or if that failed. Called by
  *  all. */
 const dvi_yee_ranks *ranks_grid(void);

@@ -77,6 +77,16 @@ static dvi_status read_share(const char *path, dvi_mesh **share)
   return dvi_mesh_read_divided(path, &options, share, &division);
 }
 
+static dvi_status save(const dvi_march *march, const char *path)
+{
+  return dvi_march_write_divided(march, division, path);
+}
+
+static dvi_status load(dvi_march *march, const char *path)
+{
+  return dvi_march_read_divided(march, division, path);
+}
+
 /* ---- planes of grids ---- */
 
 static int pass(int to, int from, int64_t count, const double *sent, double *received, void *user)
@@ -298,6 +308,8 @@ const petsc_module dvi_petsc = {
     .read = read_share,
     .read_whole = dvi_mesh_read_whole,
     .write = dvi_mesh_write_divided,
+    .save = save,
+    .load = load,
     .grid = grid,
     .tell = tell,
     .count = count,

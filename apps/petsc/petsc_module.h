@@ -5,6 +5,7 @@
 #ifndef PETSC_MODULE_H
 #define PETSC_MODULE_H
 #include <dvi/field.h>
+#include <dvi/march.h>
 #include <dvi/yee.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -68,6 +69,11 @@ typedef struct petsc_module {
 
   /** Write a whole mesh to such a file. The module need not be started. */
   dvi_status (*write)(const dvi_mesh *mesh, const char *path);
+
+  /** Write or read the state of a march on the mesh that was divided, in parts, or in one process
+   *  of a march on a whole mesh. Then the module need not be started. */
+  dvi_status (*save)(const dvi_march *march, const char *path);
+  dvi_status (*load)(dvi_march *march, const char *path);
 
   /** Give what divides grids among all processes, until the end. Called by all. NULL if that
    *  failed. */

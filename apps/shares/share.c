@@ -270,7 +270,8 @@ static bool count_unknowns(const problem *scene, mesh_division *own)
 {
   const dvi_field *field = dvi_scene_field(scene->scene);
   char *unknown = mark_unknowns(field);
-  const form_of_share form = {.counts = unknown, .by_share = true};
+  const form_of_share form = {
+      .degree = dvi_field_degree(field), .counts = unknown, .by_share = true};
   const bool good = unknown != NULL &&
                     stand_in_count(field_mesh(field), &form, ranks_number(), ranks_count(), own);
   free(unknown);

@@ -11,8 +11,8 @@
 bool share_is_implicit(const char *method);
 
 /** Check that processes can share a scene by a method, which is NULL for the scene's: leapfrog,
- *  midpoint, of waves all that is implicit, on grids yee, of solids avi and verlet. Returns DONE, or
- *  complains and returns USAGE. */
+ *  midpoint, of waves all that is implicit, on grids yee, of solids avi and verlet. Returns DONE,
+ *  or complains and returns USAGE. */
 int share_check(const char *command, const problem *scene, const char *method, int processes);
 
 /** What is told of shares. */

@@ -111,6 +111,28 @@ static void warn_of_bound(journey *j)
       facts.step, facts.bound, dvi_march_time(j->march));
 }
 
+/* Refuse states in parts of marches that have none, and get ready for others. */
+static int prepare_states(const journey *j)
+{
+  const char *const path[] = {j->request->checkpoint, j->request->resume};
+  static const char *const with_parts[] = {"leapfrog", "midpoint", "imex", "galerkin"};
+  dvi_march_facts facts;
+  dvi_march_facts_of(j->march, &facts);
+  bool has_parts = elastic_of(j->scene) != NULL;
+  for (size_t i = 0; i < sizeof with_parts / sizeof *with_parts; i++)
+    has_parts = has_parts || strcmp(facts.method, with_parts[i]) == 0;
+  for (int i = 0; i < 2; i++) {
+    if (ranks_part_state(path[i]) && !has_parts)
+      return usage_error(
+          "run: '%s' is a state in parts by its name, which fields by leapfrog and "
+          "implicit methods on meshes, and solids, have, and %s has not; give another name",
+          path[i], facts.method);
+    const int code = ranks_prepare_state(path[i]);
+    if (code != DONE) return code;
+  }
+  return DONE;
+}
+
 static int make_march(journey *j)
 {
   const run_request *r = j->request;
@@ -120,10 +142,11 @@ static int make_march(journey *j)
                                      .span = r->t_end,
                                      .threads = (int)r->threads};
   dvi_march_facts facts;
-  const int code = open_march(j->scene, &options, &j->march);
+  int code = open_march(j->scene, &options, &j->march);
+  if (code == DONE) code = prepare_states(j);
   if (code != DONE) return code;
   if (r->resume != NULL) {
-    const dvi_status loaded = dvi_march_load(j->march, r->resume);
+    const dvi_status loaded = ranks_load(j->march, r->resume);
     if (loaded != DVI_OK) return refuse_state(loaded, j);
     if (dvi_march_time(j->march) > r->t_end)
       return usage_error("run: '%s' stands at t = %.17g, past --t-end %g", r->resume,
@@ -231,7 +254,7 @@ static bool save(journey *j)
   if (ranks_agree(row_output_flush(&j->out) ? DONE : FAILED) != DONE) return false;
   const double t = dvi_march_time(j->march), *before = j->is_saved ? &j->t_saved : NULL;
   run_tell_checkpoint(r, before, &t);
-  const dvi_status status = dvi_march_save(j->march, r->checkpoint);
+  const dvi_status status = ranks_save(j->march, r->checkpoint);
   if (status != DVI_OK) return library_error(status) == DONE;
   j->t_saved = t;
   j->is_saved = true;
@@ -311,19 +334,16 @@ static int travel(journey *j)
 
 static int start_frames(journey *j)
 {
-  const dvi_mesh *mesh = dvi_scene_mesh(j->scene->scene);
-  dvi_march_facts facts;
-  dvi_march_facts_of(j->march, &facts);
-  if (ranks_count() > 1 && strcmp(facts.method, "yee") == 0)
-    return usage_error("run: --pvd of a grid is written by one process alone; leave it out, or "
-                       "mpirun, or take --method leapfrog");
+  /* the first process alone draws a grid without a mesh */
+  const bool draws = ranks_is_first() || dvi_scene_grid_only(j->scene->scene) == NULL;
+  const dvi_mesh *mesh = draws ? dvi_scene_mesh(j->scene->scene) : NULL;
   const int code = frames_start(&j->frames, j->scene->name, mesh, j->request->pvd);
   if (code != DONE) return code;
   const dvi_density *density = density_of(j->scene);
   const int n = dvi_mesh_dimension(mesh);
   const int64_t cells = dvi_mesh_count(mesh, n), vertices = dvi_mesh_count(mesh, 0),
                 numbers = density != NULL ? density_coefficients(density) + field_unknowns(j->scene)
-                                          : 6 * cells + 2 * n * vertices;
+                                          : 6 * cells + 2 * n * vertices + 1;
   j->vector = calloc((size_t)numbers, sizeof *j->vector);
   if (j->vector != NULL && density != NULL) return density_views_make(j->scene, 1, &j->views);
   if (j->vector != NULL) return DONE;

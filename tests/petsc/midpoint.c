@@ -257,8 +257,8 @@ int main(int argc, char **argv)
   }
   check_saved();
   if (argc > 1 && strcmp(argv[1], "all") == 0) {
-    check_drift(10000, 1e-14);
-    check_drift(100000, 1e-13);
+    check_drift(10000, 1.2e-13);
+    check_drift(100000, 1.2e-12);
   }
   (void)PetscFinalize();
   return failures > 0;

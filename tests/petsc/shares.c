@@ -8,6 +8,7 @@
 #include "core/memory.h"
 #include "expect.h"
 #include "parts.h"
+#include "states.h"
 #include "support/field/generated.h"
 #include "support/meshes.h"
 #include "support/shares/shares.h"
@@ -273,6 +274,7 @@ int main(int argc, char **argv)
   check_memory("blocks");
   check_memory("ptscotch");
   check_parts();
+  check_states();
   if (ranks % 2 > 0) check_refused_parts(); /* two and four fail as three do */
   (void)PetscFinalize();
   return failures > 0;

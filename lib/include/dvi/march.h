@@ -25,7 +25,8 @@ typedef struct dvi_march_options {
   size_t size; /**< sizeof(dvi_march_options) */
   /** The method, with its options: "leapfrog" (default), "avi", "avi:classes=no", "tents",
    *  "tents:least=0.5,seed=3" (docs/fields/maxwell.md). "bossavit-kettunen" is another name of
-   *  leapfrog */
+   *  leapfrog. On shares also "midpoint", and of waves "imex" and "galerkin:degree=1" or 2
+   *  (docs/fields/implicit-shares.md) */
   const char *method;
   double step;     /**< the step, above 0. Default: `fraction` of the largest stable one */
   double fraction; /**< of the largest stable step, or of each local one. Default: 0.5 */
@@ -149,7 +150,8 @@ dvi_status dvi_march_start(dvi_march *march, const dvi_march_state *state);
  *                               then
  *  @retval DVI_CALLBACK_FAILED  a signal failed. The march stands at the last good time
  *  @retval DVI_NOT_FINITE       a signal is not finite, or values are seen not to be. The march
- *                               stands at the last good time */
+ *                               stands at the last good time, or where values of leapfrog have
+ *                               overflowed must be started anew */
 dvi_status dvi_march_advance(dvi_march *march, double t);
 
 /** Return the time. NaN before a start. */

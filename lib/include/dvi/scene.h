@@ -301,7 +301,10 @@ dvi_status dvi_scene_march_state(const dvi_scene *scene, const dvi_march *march,
 
 /** Give E or B of a march of the scene's field as vectors of space in the cells of its mesh.
  *
- *  @param[out] vector  [cells*3], cell by cell. Components that the field does not have are 0
+ *  @param[out] vector  [cells*3], cell by cell. Components that the field does not have are 0. Of a
+ *                      grid that processes divide, each gets those of the cells of its share of
+ *                      the mesh, or without a mesh the first one those of the whole grid, and the
+ *                      others nothing. All of them call the function
  *  @retval DVI_UNSUPPORTED  the scene has no such march
  *  @retval (others)         as dvi_march_sample and dvi_form_at_centres */
 dvi_status dvi_scene_vectors(const dvi_scene *scene, const dvi_march *march, dvi_march_form form,

@@ -5,8 +5,9 @@
 
 #include "march/sections.h"
 
-/* The functions of a kind. `self` is its state. The last three may be NULL. A function that gives a
- * status changes nothing if it fails, except that `advance` may stand at a later good time. */
+/* The functions of a kind. `self` is its state. The last three functions may be NULL. A function
+ * that gives a status changes nothing if it fails, except that `advance` may stand at a later good
+ * time. */
 typedef struct dvi__march_kind {
   const char *name; /* "leapfrog", the name of its section in files */
   void (*destroy)(void *self);
@@ -31,6 +32,7 @@ typedef struct dvi__march_kind {
   dvi_status (*agree)(const void *self, dvi_status status);
   int (*writes)(const void *self);
   int (*is_lost)(const void *self);
+  int has_parts; /* large arrays of its state may be held elsewhere (march/parts.h) */
 } dvi__march_kind;
 
 /* Make a march of a state, which the march owns then, after a failure, too. */

@@ -6,6 +6,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "march/kind.h"
+#include "march/parts.h"
 #include "march/whole_file.h"
 
 enum { PATH_NAME = 512 };
@@ -183,10 +184,12 @@ void dvi_march_facts_of(const dvi_march *march, dvi_march_facts *facts)
 
 /* Put the state together, on processes that do not keep it for the others alone. The caller
  * releases the bytes, after a failure, too. */
-static dvi_status pack(const dvi_march *march, int keeps, dvi__sections_writer *writer)
+static dvi_status pack(const dvi_march *march, int keeps, const dvi__parts *parts,
+                       dvi__sections_writer *writer)
 {
   *writer = (dvi__sections_writer){.bytes = NULL};
   if (keeps) dvi__sections_start(writer, 1 << 12);
+  writer->parts = parts;
   DVI_TRY(march->kind->save(march->self, writer));
   return keeps ? dvi__sections_finish(writer) : DVI_OK;
 }
@@ -195,7 +198,7 @@ static dvi_status write(const dvi_march *march, const char *path)
 {
   dvi__sections_writer writer;
   const int writes = march->kind->writes == NULL || march->kind->writes(march->self);
-  dvi_status status = pack(march, writes, &writer);
+  dvi_status status = pack(march, writes, NULL, &writer);
   if (status == DVI_OK && writes) status = dvi__write_whole(path, writer.bytes, writer.size);
   dvi__release(writer.bytes);
   return status;
@@ -213,7 +216,7 @@ dvi_status dvi_march_save_memory(const dvi_march *march, void *bytes, size_t cap
   dvi__sections_writer writer;
   DVI_TRY(check_started(march));
   if (size == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "march: a place for the size is needed");
-  const dvi_status status = dvi__march_agree(march, pack(march, 1, &writer));
+  const dvi_status status = dvi__march_agree(march, pack(march, 1, NULL, &writer));
   const size_t needed = writer.size;
   if (status == DVI_OK) *size = needed;
   if (status == DVI_OK && bytes != NULL && needed <= capacity) memcpy(bytes, writer.bytes, needed);
@@ -255,5 +258,45 @@ dvi_status dvi_march_load_memory(dvi_march *march, const void *bytes, size_t siz
       sections.own != NULL
           ? dvi__sections_check(&sections, "checkpoint in memory", sections.own, size)
           : dvi__fail(DVI_NO_MEMORY, "march: no memory for a state of %zu bytes", size);
+  return take_state(march, &sections, status);
+}
+
+/* ---- states in parts ---- */
+
+static dvi_status check_parts(const dvi_march *march)
+{
+  if (march == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "march: a march is needed");
+  if (march->kind->has_parts) return DVI_OK;
+  return dvi__fail(DVI_UNSUPPORTED, "march: a state of %s is not written in parts",
+                   march->kind->name);
+}
+
+dvi_status dvi__march_put_parts(const dvi_march *march, const dvi__parts *parts,
+                                unsigned char **bytes, size_t *size)
+{
+  dvi__sections_writer writer;
+  *bytes = NULL;
+  DVI_TRY(check_started(march));
+  DVI_TRY(check_parts(march));
+  const dvi_status status = dvi__march_agree(march, pack(march, 1, parts, &writer));
+  if (status == DVI_OK) {
+    *bytes = writer.bytes;
+    *size = writer.size;
+  } else {
+    dvi__release(writer.bytes);
+  }
+  return status;
+}
+
+dvi_status dvi__march_take_parts(dvi_march *march, const char *name, const dvi__parts *parts,
+                                 unsigned char *bytes, size_t size, dvi_status status)
+{
+  dvi__sections sections = {.name = name, .own = bytes, .parts = parts};
+  const dvi_status checked = check_parts(march);
+  if (checked != DVI_OK) {
+    dvi__release(bytes);
+    return checked;
+  }
+  if (status == DVI_OK) status = dvi__sections_check(&sections, name, bytes, size);
   return take_state(march, &sections, status);
 }

@@ -159,7 +159,8 @@ dvi_status dvi__sections_check(dvi__sections *s, const char *name, const void *b
 {
   section_header header = {.name = ""};
   size_t at = sizeof(file_header);
-  *s = (dvi__sections){.name = name, .bytes = bytes, .size = size, .own = s->own};
+  *s = (dvi__sections){
+      .name = name, .bytes = bytes, .size = size, .own = s->own, .parts = s->parts};
   DVI_TRY(check_file_header(s));
   while (!section_is_named(&header, end_name)) DVI_TRY(check_section(s, at, &header, &at));
   if (at == size) return DVI_OK;

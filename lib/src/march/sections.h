@@ -20,7 +20,8 @@ enum { DVI__SECTION_NAME = 16 };
 typedef struct dvi__sections_writer {
   unsigned char *bytes; /* owned, free by dvi__release */
   size_t size, capacity;
-  size_t section; /* where the open section begins */
+  size_t section;                 /* where the open section begins */
+  const struct dvi__parts *parts; /* what holds the large arrays, or NULL (march/parts.h) */
 } dvi__sections_writer;
 
 /* Start writing, with memory for `capacity` bytes, which grows. */
@@ -41,6 +42,7 @@ typedef struct dvi__sections {
   const unsigned char *bytes; /* aligned as for any number */
   size_t size;
   unsigned char *own; /* bytes owned, freed by dvi__sections_clear. NULL for the caller's bytes */
+  const struct dvi__parts *parts; /* what holds the large arrays, or NULL (march/parts.h) */
 } dvi__sections;
 
 /* A section's content. The pointers point into the bytes. */

@@ -10,6 +10,8 @@ here=$(cd "$(dirname "$0")" && pwd)
 
 if [ ! -e "$(dirname "$dvi")/dvi_petsc.so" ]; then
   alone 'this dvi has no module for them'
+  expect 2 'a state in parts without the module' run wave.yaml --checkpoint a.h5
+  says err 'this dvi has no module for it' 'a state in parts without the module'
   [ $failures -eq 0 ] || exit 1
   echo "DVI_PETSC is OFF: no tests with MPI"
   exit 77
@@ -19,6 +21,18 @@ as_one 2 grid.yaml
 as_one 3 solid.yaml
 drawn 3 pvd field.pvd torus.yaml --every 12
 killed 3 1 2
+
+# A checkpoint in parts is the same file for any number of processes.
+by 1 wave.yaml --h 0.002 --t-end 0.1 --final --checkpoint one.h5 >out || fail "no state in parts"
+by 3 wave.yaml --h 0.002 --t-end 0.1 --final --checkpoint all.h5 >out || fail "3 write no state"
+same one.h5 all.h5 'a state in parts'
+by 1 wave.yaml --h 0.002 --t-end 0.2 --final --resume all.h5 --out rest.csv ||
+  fail "one does not go on from a state of three"
+by 1 wave.yaml --h 0.002 --t-end 0.2 --final --out whole.csv
+same whole.csv rest.csv 'one goes on from a state of three'
+expect 2 'a state of a mechanical system' run kepler --method verlet \
+  --h 0.1 --checkpoint a.h5
+says err 'is a state in parts by its name' 'a state of a mechanical system'
 
 # A mesh that processes read in parts.
 sed 's/^mesh: .*/mesh: {file: torus.h5}/' torus.yaml >parts.yaml

@@ -77,7 +77,7 @@ typedef struct shown {
 } shown;
 
 typedef struct trial {
-  int solid, method, failing;
+  int solid, method, failing, threads; /* of each process */
   const dvi_mesh *whole;
   shown of_whole;
   double *u; /* of the whole mesh at the end */
@@ -115,8 +115,10 @@ static dvi_status start(dvi_march *march, const dvi_mesh *mesh, int rank)
 static dvi_status make(const dvi_mesh *mesh, const trial *t, int rank, void *fails,
                        dvi_elastic **solid, dvi_march **march)
 {
-  const dvi_march_options options = {
-      .size = sizeof options, .method = method[t->method], .fraction = 0.6};
+  const dvi_march_options options = {.size = sizeof options,
+                                     .method = method[t->method],
+                                     .fraction = 0.6,
+                                     .threads = mesh != t->whole ? t->threads : 1};
   dvi_status status = create(t->solid, mesh, fails, solid);
   if (status == DVI_OK) status = dvi_elastic_march_create(*solid, &options, march);
   if (status == DVI_OK) status = start(*march, mesh, rank);
@@ -256,18 +258,33 @@ static void end(trial *t)
   dvi_mesh_destroy(&whole);
 }
 
+static void check_divisions(trial *t, int most)
+{
+  for (int count = 1; count <= most; count++)
+    for (int style = 0; style < 1 + (count > 1); style++) {
+      int *owner = owners_of(t->whole, count, style);
+      run_ranks(t->whole, count, owner, run_share, t);
+      for (int r = 0; r < count; r++)
+        ck_assert_msg(t->wrong[r][0] == '\0', "%s of solid %d, process %d of %d: %s",
+                      method[t->method], t->solid, r, count, t->wrong[r]);
+      free(owner);
+    }
+}
+
 START_TEST(all_divisions_have_the_bytes_of_the_whole_mesh)
 {
   trial t = begin(_i / METHODS, _i % METHODS);
-  for (int count = 1; count <= MOST; count++)
-    for (int style = 0; style < 1 + (count > 1); style++) {
-      int *owner = owners_of(t.whole, count, style);
-      run_ranks(t.whole, count, owner, run_share, &t);
-      for (int r = 0; r < count; r++)
-        ck_assert_msg(t.wrong[r][0] == '\0', "%s of solid %d, process %d of %d: %s",
-                      method[t.method], t.solid, r, count, t.wrong[r]);
-      free(owner);
-    }
+  check_divisions(&t, MOST);
+  end(&t);
+}
+END_TEST
+
+/* Free steps have messages instead of slots, and one thread. */
+START_TEST(threads_of_each_process_have_the_bytes_of_the_whole_mesh)
+{
+  trial t = begin(1 + _i / 2, _i % 2);
+  t.threads = 2;
+  check_divisions(&t, 2);
   end(&t);
 }
 END_TEST
@@ -295,7 +312,12 @@ static void run_failing(const dvi_mesh *share, int rank, void *user)
 /* All march on up to the last event before, as one process does. */
 START_TEST(what_fails_on_one_process_fails_on_all)
 {
-  trial t = {.solid = 2, .method = _i % METHODS, .failing = _i / METHODS, .whole = mesh_of(2)};
+  const int threaded = _i >= 3 * METHODS, i = _i - 3 * METHODS;
+  trial t = {.solid = 2,
+             .method = threaded ? i : _i % METHODS,
+             .failing = threaded ? i : _i / METHODS,
+             .threads = threaded ? 2 : 1,
+             .whole = mesh_of(2)};
   int *owner = owners_of(t.whole, 3, 0);
   dvi_elastic *solid = NULL;
   dvi_march *march = NULL;
@@ -447,7 +469,7 @@ static dvi_status refused(const dvi_mesh *share, int what)
   double omega;
   if (what == 0) terms.obstacle = &floor, terms.obstacles = 1;
   if (what == 1) material.beta = 0.1;
-  if (what == 2) options.threads = 2;
+  if (what == 2) options.method = "avi:classes=no", options.threads = 2;
   if (what == 3) options.method = "verlet", options.step = 1;
   if (what == 4) material.part = "left";
   if (what == 5)
@@ -475,7 +497,7 @@ START_TEST(what_needs_a_whole_mesh_is_refused)
     const char *words;
   } expected[] = {{DVI_UNSUPPORTED, "an obstacle needs a whole mesh"},
                   {DVI_UNSUPPORTED, "a damping beta needs a whole mesh"},
-                  {DVI_UNSUPPORTED, "several threads needs a whole mesh"},
+                  {DVI_UNSUPPORTED, "avi:classes=no on several threads needs a whole mesh"},
                   {DVI_BAD_ARGUMENT, "of cell 61 near (0, 0.666667, 0): take a shorter step"},
                   {DVI_BAD_ARGUMENT, "a material is set on part \"left\""},
                   {DVI_BAD_ARGUMENT, "the load on part \"right\" does nothing"},
@@ -496,7 +518,8 @@ END_TEST
 SUITE(elastic_shares)
 {
   tcase_add_loop_test(tests, all_divisions_have_the_bytes_of_the_whole_mesh, 0, SOLIDS * METHODS);
-  tcase_add_loop_test(tests, what_fails_on_one_process_fails_on_all, 0, 3 * METHODS);
+  tcase_add_loop_test(tests, what_fails_on_one_process_fails_on_all, 0, 3 * METHODS + 2);
+  tcase_add_loop_test(tests, threads_of_each_process_have_the_bytes_of_the_whole_mesh, 0, 4);
   tcase_add_test(tests, memory_that_lacks_on_one_process_ends_all);
   tcase_add_test(tests, neighbours_speak_of_what_they_share_alone);
   tcase_add_loop_test(tests, what_needs_a_whole_mesh_is_refused, 0, 8);

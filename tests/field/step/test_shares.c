@@ -133,6 +133,46 @@ START_TEST(a_step_that_is_too_long_is_refused_with_the_sentence_of_one_process)
 }
 END_TEST
 
+/* ---- values that overflow ---- */
+
+/* The field is large at half of the edges of the whole mesh. */
+static void march_beyond(const dvi_mesh *mesh, int rank, void *user)
+{
+  refusals *r = user;
+  const int64_t edges = dvi_mesh_count(mesh, 1);
+  double *E = calloc((size_t)edges, sizeof *E);
+  for (int64_t e = 0; e < edges; e++)
+    if (dvi_mesh_share_numbers(mesh, 1)[e] < 150) E[e] = e % 2 ? 1.7e308 : -1.7e308;
+  dvi_field *field = cavity_field(mesh);
+  dvi_march *march = NULL;
+  const dvi_march_state state = {.size = sizeof state, .E = E};
+  ck_assert_int_eq(dvi_march_create(field, NULL, &march), DVI_OK);
+  ck_assert_int_eq(dvi_march_start(march, &state), DVI_OK);
+  r->status[rank] = dvi_march_advance(march, 2);
+  (void)strncpy(r->sentence[rank], dvi_last_error(), 255);
+  ck_assert_int_eq(dvi_march_advance(march, 3), DVI_BAD_STATE);
+  dvi_march_destroy(&march);
+  dvi_field_destroy(&field);
+  free(E);
+}
+
+START_TEST(values_that_overflow_are_refused_by_all_processes)
+{
+  dvi_mesh *mesh = generated("box", (dvi_generator_options){.cells = {4, 4, 4}});
+  refusals here = {.status = {DVI_OK}};
+  int owner[64];
+  divide(64, 3, 0, owner);
+  run_ranks(mesh, 3, owner, march_beyond, &here);
+  for (int r = 0; r < 3; r++) {
+    ck_assert_int_eq(here.status[r], DVI_NOT_FINITE);
+    ck_assert_msg(strstr(here.sentence[r], "has overflowed") != NULL ||
+                      strstr(here.sentence[r], "another one of 3 processes") != NULL,
+                  "%s", here.sentence[r]);
+  }
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
+
 static int keep_values(int degree, double *values, void *user)
 {
   (void)degree, (void)values, (void)user;
@@ -193,46 +233,6 @@ START_TEST(the_share_of_one_process_can_be_cut)
   ck_assert_int_eq(cut_half(mesh, &half), DVI_OK);
   run_ranks(mesh, 1, owner, cut_again, half);
   dvi_mesh_destroy(&half);
-  dvi_mesh_destroy(&mesh);
-}
-END_TEST
-
-/* ---- values that overflow ---- */
-
-/* The field is large at half of the edges of the whole mesh. */
-static void march_beyond(const dvi_mesh *mesh, int rank, void *user)
-{
-  refusals *r = user;
-  const int64_t edges = dvi_mesh_count(mesh, 1);
-  double *E = calloc((size_t)edges, sizeof *E);
-  for (int64_t e = 0; e < edges; e++)
-    if (dvi_mesh_share_numbers(mesh, 1)[e] < 150) E[e] = e % 2 ? 1.7e308 : -1.7e308;
-  dvi_field *field = cavity_field(mesh);
-  dvi_march *march = NULL;
-  const dvi_march_state state = {.size = sizeof state, .E = E};
-  ck_assert_int_eq(dvi_march_create(field, NULL, &march), DVI_OK);
-  ck_assert_int_eq(dvi_march_start(march, &state), DVI_OK);
-  r->status[rank] = dvi_march_advance(march, 2);
-  (void)strncpy(r->sentence[rank], dvi_last_error(), 255);
-  ck_assert_int_eq(dvi_march_advance(march, 3), DVI_BAD_STATE);
-  dvi_march_destroy(&march);
-  dvi_field_destroy(&field);
-  free(E);
-}
-
-START_TEST(values_that_overflow_are_refused_by_all_processes)
-{
-  dvi_mesh *mesh = generated("box", (dvi_generator_options){.cells = {4, 4, 4}});
-  refusals here = {.status = {DVI_OK}};
-  int owner[64];
-  divide(64, 3, 0, owner);
-  run_ranks(mesh, 3, owner, march_beyond, &here);
-  for (int r = 0; r < 3; r++) {
-    ck_assert_int_eq(here.status[r], DVI_NOT_FINITE);
-    ck_assert_msg(strstr(here.sentence[r], "has overflowed") != NULL ||
-                      strstr(here.sentence[r], "another one of 3 processes") != NULL,
-                  "%s", here.sentence[r]);
-  }
   dvi_mesh_destroy(&mesh);
 }
 END_TEST

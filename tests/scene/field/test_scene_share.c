@@ -69,12 +69,42 @@ static void read_share(const dvi_mesh *share, int rank, void *user)
   dvi_scene_destroy(&scene);
 }
 
+enum { CELLS = 144 };
+
+/* Write tetrahedra to the file layers.msh: one part of half of them, one in it, and one beside it,
+ * of which some are in it. */
+static dvi_mesh *layers(void)
+{
+  static const int first[] = {0, 10, 60}, last[] = {72, 40, 80};
+  static const char *const name[] = {"half", "core", "torn"};
+  int corners, number[CELLS];
+  dvi_mesh *whole = generated("kuhn", (dvi_generator_options){.cells = {4, 3, 2}}), *made;
+  dvi_mesh_part part[3];
+  for (int c = 0; c < CELLS; c++) number[c] = c;
+  for (int p = 0; p < 3; p++)
+    part[p] = (dvi_mesh_part){
+        .name = name[p], .degree = 3, .count = last[p] - first[p], .cell = number + first[p]};
+  const dvi_mesh_terms terms = {.size = sizeof terms,
+                                .dimension = 3,
+                                .points = dvi_mesh_count(whole, 0),
+                                .point = dvi_mesh_points(whole),
+                                .cells = CELLS,
+                                .vertex = dvi_mesh_vertices(whole, 3, &corners),
+                                .part = part,
+                                .parts = 3};
+  ck_assert_msg(dvi_mesh_create(&terms, &made) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_int_eq(dvi_mesh_write(made, path_in_folder("layers.msh"), 0, NULL), DVI_OK);
+  dvi_mesh_destroy(&whole);
+  return made;
+}
+
 /* Read a scene on all shares of a box of 4*3*2 cells, or of these cut into tetrahedra. */
 static void read_shares(const char *text, shared_scene *s)
 {
-  enum { CELLS = 144 };
   const dvi_generator_options options = {.cells = {4, 3, 2}};
-  dvi_mesh *mesh = generated(strstr(text, "kuhn") != NULL ? "kuhn" : "box", options);
+  dvi_mesh *mesh = strstr(text, "layers") != NULL
+                       ? layers()
+                       : generated(strstr(text, "kuhn") != NULL ? "kuhn" : "box", options);
   int owner[CELLS];
   for (int c = 0; c < CELLS; c++) owner[c] = c % PROCESSES;
   s->path = path_in_folder("share.yaml");
@@ -94,6 +124,11 @@ static void read_shares(const char *text, shared_scene *s)
   "mesh: {generator: kuhn, cells: [4, 3, 2]}\nfield: elastic\nstep: {fraction: 0.5}\n" \
   "until: 1\nmethod: verlet\n"
 
+#define LAYERS                                                                            \
+  "mesh: {file: layers.msh}\nfield: elastic\nstep: {fraction: 0.5}\nuntil: 1\n"           \
+  "method: avi\nloads: {gravity: [0, 0, -0.1]}\nprobes: {work: {of: load}}\nmaterials: {" \
+  "all: {law: svk, lambda: 1, mu: 1, rho: 2}, half: {law: svk, lambda: 1, mu: 1, rho: 3}, "
+
 /* All processes observe what one observes on the whole mesh. */
 static void check_observed(const char *text)
 {
@@ -110,6 +145,24 @@ static void check_observed(const char *text)
     for (int i = 0; i < SEEN; i++) ck_assert_double_eq(s.seen[r][i], whole[i]);
   }
 }
+
+static void check_refused(const char *text, dvi_status status, const char *words)
+{
+  shared_scene s = {.path = NULL};
+  read_shares(text, &s);
+  for (int r = 0; r < PROCESSES; r++) {
+    ck_assert_int_eq(s.status[r], status);
+    if (words != NULL) ck_assert_msg(strstr(s.message[r], words) != NULL, "%s", s.message[r]);
+  }
+}
+
+START_TEST(gravity_knows_the_materials_of_the_whole_mesh)
+{
+  check_observed(LAYERS "core: {law: svk, lambda: 2, mu: 1, rho: 0.5}}\n");
+  check_refused(LAYERS "torn: {law: svk, lambda: 2, mu: 1, rho: 0.5}}\n", DVI_BAD_FILE,
+                "the part 'torn' must lie in one other material, and its cells have several");
+}
+END_TEST
 
 START_TEST(marches_have_the_bits_of_the_whole_mesh)
 {
@@ -134,16 +187,6 @@ START_TEST(marches_have_the_bits_of_the_whole_mesh)
                        "initial: {u': \"[0.2*y, -0.1*z, 0.15*x*z]\"}\n");
 }
 END_TEST
-
-static void check_refused(const char *text, dvi_status status, const char *words)
-{
-  shared_scene s = {.path = NULL};
-  read_shares(text, &s);
-  for (int r = 0; r < PROCESSES; r++) {
-    ck_assert_int_eq(s.status[r], status);
-    if (words != NULL) ck_assert_msg(strstr(s.message[r], words) != NULL, "%s", s.message[r]);
-  }
-}
 
 START_TEST(what_needs_the_whole_mesh_is_refused)
 {
@@ -219,6 +262,7 @@ END_TEST
 SUITE(scene_share)
 {
   tcase_add_checked_fixture(tests, make_folder, remove_folder);
+  tcase_add_test(tests, gravity_knows_the_materials_of_the_whole_mesh);
   tcase_add_test(tests, marches_have_the_bits_of_the_whole_mesh);
   tcase_add_test(tests, what_needs_the_whole_mesh_is_refused);
   tcase_add_test(tests, sums_over_a_field_are_rounded_once);

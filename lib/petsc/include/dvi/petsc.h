@@ -10,6 +10,7 @@
 #ifndef DVI_PETSC_H
 #define DVI_PETSC_H
 #include <dvi/field.h>
+#include <dvi/march.h>
 #include <dvi/mesh.h>
 #include <dvi/yee.h>
 #include <mpi.h>
@@ -114,6 +115,31 @@ dvi_status dvi_mesh_read_divided(const char *path, const dvi_division_options *o
  *
  *  @retval (all)  as dvi_mesh_read_divided */
 dvi_status dvi_mesh_read_whole(const char *path, dvi_mesh **mesh);
+
+/** Write the state of a march to a file of HDF5, of which each process writes a block of each
+ *  array. No process holds the whole state, and any number of processes goes on from the file with
+ *  the same bits. All processes of the division call it.
+ *
+ *  An old file is replaced only when all is written. If one process fails, all of them do.
+ *
+ *  @param march  of a field on a mesh by leapfrog, midpoint, imex or galerkin, or of a solid
+ *  @param division  that of the march's mesh. NULL for a whole mesh in one process, which needs
+ *                   neither MPI nor PETSc to be started
+ *  @retval DVI_UNSUPPORTED   other marches
+ *  @retval DVI_IO_ERROR      the file could not be written
+ *  @retval DVI_BAD_ARGUMENT  an argument is missing, or the division is of another mesh
+ *  @retval DVI_BAD_STATE     the march has not been started
+ *  @retval DVI_NO_MEMORY     there is no memory
+ *  @retval DVI_SOLVER_FAILED PETSc or MPI failed */
+dvi_status dvi_march_write_divided(const dvi_march *march, const dvi_division *division,
+                                   const char *path);
+
+/** Read such a state. The march goes on as the one that wrote it, and stays as it was after a
+ *  failure, on all processes.
+ *
+ *  @retval DVI_BAD_FILE  the file is no such state, damaged, cut short, or of another march
+ *  @retval (others)      as dvi_march_write_divided */
+dvi_status dvi_march_read_divided(dvi_march *march, const dvi_division *division, const char *path);
 
 /** Find owners of the n-cells of a mesh, among any number of processes. Few may foresee how many
  *  would share it: the owners are not the ones that dvi_mesh_divide finds on another number of

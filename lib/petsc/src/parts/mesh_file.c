@@ -151,7 +151,7 @@ dvi_status dvi_mesh_write_divided(const dvi_mesh *mesh, const char *path)
   if (dvi_mesh_share_numbers(mesh, 0) != NULL)
     return dvi__fail(DVI_UNSUPPORTED, "petsc: a file in parts is written of a whole mesh, and this "
                                       "is a share (dvi_mesh_cut)");
-  DVI_TRY(dvi__slabs_create(path, &file));
+  DVI_TRY(dvi__slabs_create(NULL, path, &file));
   const dvi_status status = write_mesh(file, mesh);
   const dvi_status ended = dvi__slabs_end(&file, status == DVI_OK);
   return status != DVI_OK ? status : ended;

@@ -1,7 +1,8 @@
 #define _POSIX_C_SOURCE 200809L
-#include "slabs.h"
+#include "slabs_struct.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <hdf5.h>
 #include <limits.h>
 #include <stdarg.h>
@@ -12,22 +13,15 @@
 #include "core/memory.h"
 #include "core/status.h"
 
-/* Numbers of at most so many bytes stand in the header of their dataset, and others in chunks. */
-enum { NAME_SIZE = 64, HEADER_MOST = 1024, CHUNK_BYTES = 1 << 19 };
-
-struct dvi__slabs {
-  hid_t id;
-  char *path, *beside; /* the file that is written */
-  H5E_auto2_t printer; /* of HDF5's own words, which are not wanted */
-  void *printer_user;
-};
+enum { NAME_SIZE = 64 };
 
 /* ---- open and close ---- */
 
-static dvi__slabs *slabs_new(const char *path)
+static dvi__slabs *slabs_new(const dvi__world *world, const char *path)
 {
   dvi__slabs *file = DVI_NEW(dvi__slabs, 1);
   if (file == NULL) return NULL;
+  file->world = world;
   file->id = H5I_INVALID_HID;
   file->path = dvi__duplicate(path, strlen(path) + 1, 1);
   (void)H5Eget_auto2(H5E_DEFAULT, &file->printer, &file->printer_user);
@@ -54,6 +48,11 @@ dvi_status dvi__slabs_refuse(const dvi__slabs *file, const char *sentence, ...)
   return dvi__fail(DVI_BAD_FILE, "%.200s: %s", file->path, text);
 }
 
+static dvi_status agree(const dvi__world *world, dvi_status status)
+{
+  return world != NULL ? dvi__world_agree(world, status) : status;
+}
+
 /* MPI's files tell less about a failure than the system does. */
 static dvi_status check_readable(const char *path)
 {
@@ -64,80 +63,149 @@ static dvi_status check_readable(const char *path)
   return DVI_OK;
 }
 
+/* Make the list of how a file is accessed, for H5Pclose. */
+static hid_t access_by(const dvi__world *world)
+{
+  const hid_t list = H5Pcreate(H5P_FILE_ACCESS);
+  if (list < 0 || world == NULL || H5Pset_fapl_mpio(list, world->comm, MPI_INFO_NULL) >= 0)
+    return list;
+  (void)H5Pclose(list);
+  return H5I_INVALID_HID;
+}
+
 static hid_t open_together(const dvi__world *world, const char *path)
 {
-  const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
-  hid_t id = H5I_INVALID_HID;
-  if (access >= 0 && H5Pset_fapl_mpio(access, world->comm, MPI_INFO_NULL) >= 0)
-    id = H5Fopen(path, H5F_ACC_RDONLY, access);
+  const hid_t access = access_by(world),
+              id = access >= 0 ? H5Fopen(path, H5F_ACC_RDONLY, access) : H5I_INVALID_HID;
   if (access >= 0) (void)H5Pclose(access);
   return id;
 }
 
 dvi_status dvi__slabs_open(const dvi__world *world, const char *path, dvi__slabs **file)
 {
-  dvi__slabs *made = slabs_new(path);
+  dvi__slabs *made = slabs_new(world, path);
   dvi_status status = made != NULL && made->path != NULL
                           ? check_readable(path)
                           : dvi__fail(DVI_NO_MEMORY, "petsc: no memory for a file");
-  status = dvi__world_agree(world, status);
+  status = agree(world, status);
   if (status == DVI_OK) {
     made->id = open_together(world, path);
-    status = dvi__world_agree(world, made->id >= 0 ? DVI_OK
-                                                   : dvi__fail(DVI_BAD_FILE,
-                                                               "%.300s: it is no file of HDF5, or "
-                                                               "it is cut short",
-                                                               path));
+    status = agree(
+        world,
+        made->id >= 0
+            ? DVI_OK
+            : dvi__fail(DVI_BAD_FILE, "%.300s: it is no file of HDF5, or it is cut short", path));
   }
   *file = made;
   if (status != DVI_OK) (void)dvi__slabs_end(file, 0);
   return status;
 }
 
-/* Headers of this version have checksums. */
-static hid_t create_file(const char *path)
+/* ---- a file beside its place ---- */
+
+static int is_first(const dvi__slabs *file)
 {
-  const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
-  hid_t id = H5I_INVALID_HID;
-  if (access >= 0 && H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_LATEST) >= 0)
-    id = H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, access);
-  if (access >= 0) (void)H5Pclose(access);
-  return id;
+  return file->world == NULL || file->world->rank == 0;
 }
 
-dvi_status dvi__slabs_create(const char *path, dvi__slabs **file)
+/* Name the file after the first process. */
+static dvi_status name_beside(dvi__slabs *file, const char *path)
 {
-  dvi__slabs *made = slabs_new(path);
   const size_t size = strlen(path) + NAME_SIZE;
-  *file = made;
-  if (made != NULL) made->beside = dvi__allocate(size, 1);
-  if (made == NULL || made->path == NULL || made->beside == NULL) {
-    (void)dvi__slabs_end(file, 0);
-    return dvi__fail(DVI_NO_MEMORY, "petsc: no memory for a file");
-  }
-  (void)snprintf(made->beside, size, "%s.part-%ld", path, (long)getpid());
-  made->id = create_file(made->beside);
-  if (made->id >= 0) return DVI_OK;
-  (void)dvi__slabs_end(file, 0);
-  return dvi__fail(DVI_IO_ERROR, "cannot write a file beside %.300s", path);
+  int64_t process = getpid();
+  dvi_status status = DVI_OK;
+  if (file->world != NULL &&
+      MPI_Bcast(&process, 1, MPI_INT64_T, 0, file->world->comm) != MPI_SUCCESS)
+    status = dvi__world_fail(file->world);
+  file->beside = dvi__allocate(size, 1);
+  if (status == DVI_OK && file->beside == NULL)
+    status = dvi__fail(DVI_NO_MEMORY, "petsc: no memory for a file");
+  if (file->beside != NULL)
+    (void)snprintf(file->beside, size, "%s.part-%lld", path, (long long)process);
+  return status;
 }
 
-static dvi_status finish(const dvi__slabs *file, int keep, int is_closed)
+/* The first process creates an empty file, of which the system tells why it cannot be. */
+static dvi_status try_beside(const dvi__slabs *file)
 {
-  if (file->beside == NULL) return DVI_OK;
-  if (keep && is_closed && rename(file->beside, file->path) == 0) return DVI_OK;
-  const int reason = is_closed ? errno : EIO;
+  if (!is_first(file)) return DVI_OK;
+  FILE *stream = fopen(file->beside, "wb");
+  if (stream != NULL && fclose(stream) == 0) return DVI_OK;
+  return dvi__fail(DVI_IO_ERROR, "cannot write a file beside %.300s: %s", file->path,
+                   strerror(errno));
+}
+
+/* Headers of this version have checksums. The same contents are the same bytes at any time. */
+static dvi_status create(dvi__slabs *file)
+{
+  const hid_t access = access_by(file->world), how = H5Pcreate(H5P_FILE_CREATE);
+  if (access >= 0 && how >= 0 && H5Pset_obj_track_times(how, 0) >= 0 &&
+      H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110) >= 0)
+    file->id = H5Fcreate(file->beside, H5F_ACC_TRUNC, how, access);
+  if (access >= 0) (void)H5Pclose(access);
+  if (how >= 0) (void)H5Pclose(how);
+  return file->id >= 0 ? DVI_OK
+                       : dvi__fail(DVI_IO_ERROR, "cannot write a file beside %.300s: HDF5 failed",
+                                   file->path);
+}
+
+dvi_status dvi__slabs_create(const dvi__world *world, const char *path, dvi__slabs **file)
+{
+  dvi__slabs *made = slabs_new(world, path);
+  dvi_status status = agree(world, made != NULL && made->path != NULL
+                                       ? DVI_OK
+                                       : dvi__fail(DVI_NO_MEMORY, "petsc: no memory for a file"));
+  if (status == DVI_OK) status = agree(world, name_beside(made, path));
+  if (status == DVI_OK) status = agree(world, try_beside(made));
+  if (status == DVI_OK) status = agree(world, create(made));
+  *file = made;
+  if (status != DVI_OK) (void)dvi__slabs_end(file, 0);
+  return status;
+}
+
+/* Have the bytes on the disk before the name changes. Returns 0 or the error number. */
+static int flush(const char *path)
+{
+  const int descriptor = open(path, O_RDWR | O_CLOEXEC);
+  if (descriptor < 0) return errno;
+  const int reason = fsync(descriptor) != 0 ? errno : 0;
+  (void)close(descriptor);
+  return reason;
+}
+
+static dvi_status keep_file(const dvi__slabs *file)
+{
+  int reason = flush(file->beside);
+  if (reason == 0 && rename(file->beside, file->path) != 0) reason = errno;
+  if (reason == 0) return DVI_OK;
   (void)unlink(file->beside);
-  return keep ? dvi__fail(DVI_IO_ERROR, "cannot write %.300s: %s", file->path, strerror(reason))
-              : DVI_OK;
+  return dvi__fail(DVI_IO_ERROR, "cannot write %.300s: %s", file->path, strerror(reason));
+}
+
+/* Close a file that is written. */
+static dvi_status finish(const dvi__slabs *file, int keep)
+{
+  const int is_closed = H5Fclose(file->id) >= 0;
+  if (file->beside == NULL) return DVI_OK;
+  const dvi_status closed = agree(
+      file->world, is_closed || !keep
+                       ? DVI_OK
+                       : dvi__fail(DVI_IO_ERROR, "cannot write %.300s: HDF5 failed", file->path));
+  if (!is_first(file)) return agree(file->world, DVI_OK);
+  if (closed == DVI_OK && keep) return agree(file->world, keep_file(file));
+  (void)unlink(file->beside);
+  (void)agree(file->world, DVI_OK);
+  return closed;
 }
 
 dvi_status dvi__slabs_end(dvi__slabs **file, int keep)
 {
   dvi_status status = DVI_OK;
   if (*file == NULL) return DVI_OK;
-  const int was_open = (*file)->id >= 0, is_closed = was_open && H5Fclose((*file)->id) >= 0;
-  if (was_open) status = finish(*file, keep, is_closed);
+  if ((*file)->id >= 0)
+    status = finish(*file, keep);
+  else if ((*file)->beside != NULL && is_first(*file))
+    (void)unlink((*file)->beside);
   slabs_free(*file);
   *file = NULL;
   return status;
@@ -145,18 +213,11 @@ dvi_status dvi__slabs_end(dvi__slabs **file, int keep)
 
 /* ---- datasets ---- */
 
-static hid_t type_in_memory(dvi__number_type type)
+hid_t dvi__slabs_type(dvi__number_type type)
 {
   if (type == DVI__INT8) return H5T_NATIVE_INT8;
   if (type == DVI__INT32) return H5T_NATIVE_INT32;
   return type == DVI__INT64 ? H5T_NATIVE_INT64 : H5T_NATIVE_DOUBLE;
-}
-
-static hid_t type_in_file(dvi__number_type type)
-{
-  if (type == DVI__INT8) return H5T_STD_I8LE;
-  if (type == DVI__INT32) return H5T_STD_I32LE;
-  return type == DVI__INT64 ? H5T_STD_I64LE : H5T_IEEE_F64LE;
 }
 
 int dvi__slabs_have(const dvi__slabs *file, const char *name)
@@ -205,7 +266,7 @@ dvi_status dvi__slabs_shape(const dvi__slabs *file, const char *name, int64_t *r
 static int has_class(hid_t set, dvi__number_type type)
 {
   const hid_t stored = H5Dget_type(set);
-  const int is_same = stored >= 0 && H5Tget_class(stored) == H5Tget_class(type_in_memory(type));
+  const int is_same = stored >= 0 && H5Tget_class(stored) == H5Tget_class(dvi__slabs_type(type));
   if (stored >= 0) (void)H5Tclose(stored);
   return is_same;
 }
@@ -219,7 +280,7 @@ static int read_rows(hid_t set, const dvi__slab *slab, void *numbers)
   const hid_t place = H5Dget_space(set), memory = H5Screate_simple(axes, count, NULL);
   const int is_read = place >= 0 && memory >= 0 &&
                       H5Sselect_hyperslab(place, H5S_SELECT_SET, start, NULL, count, NULL) >= 0 &&
-                      H5Dread(set, type_in_memory(slab->type), memory, place, H5P_DEFAULT,
+                      H5Dread(set, dvi__slabs_type(slab->type), memory, place, H5P_DEFAULT,
                               numbers) >= 0;
   if (place >= 0) (void)H5Sclose(place);
   if (memory >= 0) (void)H5Sclose(memory);
@@ -260,69 +321,4 @@ dvi_status dvi__slabs_read_text(const dvi__slabs *file, const char *name, size_t
   if (set >= 0) (void)H5Dclose(set);
   return is_read ? DVI_OK
                  : dvi__slabs_refuse(file, "it has no text \"%s\", or that is damaged", name);
-}
-
-/* ---- write ---- */
-
-static dvi_status check_written(const dvi__slabs *file, int is_written)
-{
-  return is_written ? DVI_OK
-                    : dvi__fail(DVI_IO_ERROR, "cannot write %.300s: HDF5 failed", file->path);
-}
-
-/* Let a dataset have checksums: of its header, where it is small, or of chunks of whole rows. */
-static int choose_layout(hid_t how, hid_t type, hid_t space)
-{
-  hsize_t extent[2] = {1, 1};
-  const int axes = H5Sget_simple_extent_ndims(space);
-  if (axes > 0) (void)H5Sget_simple_extent_dims(space, extent, NULL);
-  const hsize_t row = extent[1] * H5Tget_size(type), most = CHUNK_BYTES / row;
-  if (extent[0] * row <= HEADER_MOST) return H5Pset_layout(how, H5D_COMPACT) >= 0;
-  if (extent[0] > most) extent[0] = most > 0 ? most : 1;
-  return H5Pset_chunk(how, axes, extent) >= 0 && H5Pset_fletcher32(how) >= 0;
-}
-
-static hid_t create_set(hid_t file, const char *name, hid_t type, hid_t space)
-{
-  const hid_t how = H5Pcreate(H5P_DATASET_CREATE);
-  const hid_t set = how >= 0 && space >= 0 && choose_layout(how, type, space)
-                        ? H5Dcreate2(file, name, type, space, H5P_DEFAULT, how, H5P_DEFAULT)
-                        : H5I_INVALID_HID;
-  if (how >= 0) (void)H5Pclose(how);
-  return set;
-}
-
-/* Write a whole dataset, and close its space. */
-static int write_set(hid_t file, const char *name, hid_t type, hid_t in_memory, hid_t space,
-                     const void *numbers)
-{
-  const hid_t set = create_set(file, name, type, space);
-  int is_written = set >= 0 &&
-                   H5Dwrite(set, in_memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers) >= 0;
-  if (set >= 0) is_written = H5Dclose(set) >= 0 && is_written;
-  if (space >= 0) (void)H5Sclose(space);
-  return is_written;
-}
-
-dvi_status dvi__slabs_write(const dvi__slabs *file, const dvi__slab *slab, const void *numbers)
-{
-  const hsize_t extent[2] = {(hsize_t)slab->rows, (hsize_t)slab->width};
-  const hid_t space = H5Screate_simple(slab->width > 0 ? 2 : 1, extent, NULL);
-  return check_written(file, write_set(file->id, slab->name, type_in_file(slab->type),
-                                       type_in_memory(slab->type), space, numbers));
-}
-
-dvi_status dvi__slabs_write_text(const dvi__slabs *file, const char *name, const char *text)
-{
-  const hid_t type = H5Tcopy(H5T_C_S1), space = H5Screate(H5S_SCALAR);
-  const int is_written = type >= 0 && H5Tset_size(type, strlen(text) + 1) >= 0 &&
-                         write_set(file->id, name, type, type, space, text);
-  if (type >= 0) (void)H5Tclose(type);
-  return check_written(file, is_written);
-}
-
-dvi_status dvi__slabs_write_group(const dvi__slabs *file, const char *name)
-{
-  const hid_t group = H5Gcreate2(file->id, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-  return check_written(file, group >= 0 && H5Gclose(group) >= 0);
 }

@@ -1,4 +1,5 @@
-/* Datasets of HDF5 that processes read in parts. */
+/* Datasets of HDF5 that processes read and write in parts. The world of a process alone is NULL,
+ * and MPI need not be started. */
 #ifndef DVI_PETSC_SLABS_H
 #define DVI_PETSC_SLABS_H
 #include <dvi/status.h>
@@ -23,9 +24,9 @@ typedef struct dvi__slab {
 /* Open a file on all processes of a world. DVI_IO_ERROR, DVI_BAD_FILE if it is none of HDF5. */
 dvi_status dvi__slabs_open(const dvi__world *world, const char *path, dvi__slabs **file);
 
-/* Make a file with a name of its own beside `path`. With `keep` the end gives it the name `path`,
- * and otherwise it is removed. */
-dvi_status dvi__slabs_create(const char *path, dvi__slabs **file);
+/* Make a file with a name of its own beside `path`, on all processes. With `keep` the end gives it
+ * the name `path`, and otherwise it is removed. */
+dvi_status dvi__slabs_create(const dvi__world *world, const char *path, dvi__slabs **file);
 dvi_status dvi__slabs_end(dvi__slabs **file, int keep);
 
 /* Tell whether the file has a dataset or a group. A/B is looked for if there is an A. */
@@ -44,6 +45,11 @@ dvi_status dvi__slabs_read(const dvi__slabs *file, const dvi__slab *slab, void *
 /* Read a text that has fewer than `size` bytes. */
 dvi_status dvi__slabs_read_text(const dvi__slabs *file, const char *name, size_t size, char *text);
 
+/* Write a dataset of `total` rows, of which each process gives its own, maybe none. Or write a
+ * text, a group or, in a process alone, a whole dataset with checksums. All processes make these
+ * calls, and agree on failures afterwards. */
+dvi_status dvi__slabs_write_rows(const dvi__slabs *file, const dvi__slab *slab, int64_t total,
+                                 const void *numbers);
 dvi_status dvi__slabs_write(const dvi__slabs *file, const dvi__slab *slab, const void *numbers);
 dvi_status dvi__slabs_write_text(const dvi__slabs *file, const char *name, const char *text);
 dvi_status dvi__slabs_write_group(const dvi__slabs *file, const char *name);

@@ -35,6 +35,7 @@ struct dvi__edges {
 
 typedef struct work {
   const dvi__unknowns *edges;
+  const double *of_gradients; /* [unknowns] */
   dvi_matrix d;
   dvi__operator vertex; /* without entries */
   PetscInt *place;      /* [vertices] in its columns */
@@ -136,12 +137,30 @@ static PetscErrorCode make_rows(const work *w, const dvi__operator *A, int axis,
   return dvi__rows_tell(A, made);
 }
 
+/* Make the product of the diagonal that A is for gradients. */
+static PetscErrorCode make_gradients(const work *w, const dvi__operator *A, const dvi__rows *rows,
+                                     dvi__coarser *made)
+{
+  const size_t count = (size_t)A->rows;
+  dvi__operator D = *A;
+  PetscCall(PetscMalloc3(count + 1, &D.start, count, &D.column, count, &D.value));
+  for (PetscInt i = 0; i < A->rows; i++) D.start[i] = D.column[i] = i;
+  D.start[A->rows] = A->rows;
+  for (int64_t i = 0; i < w->edges->count; i++)
+    if (w->edge[i] < A->own) D.value[w->edge[i]] = w->of_gradients[i];
+  PetscCall(dvi__product(&D, rows, NULL, made));
+  return PetscFree3(D.start, D.column, D.value);
+}
+
 static PetscErrorCode make_space(const work *w, const dvi__edges *e, int axis, space *made)
 {
   dvi__rows rows = {0};
   PetscCall(dvi__rows_allocate(e->A, e->own, 2, &rows));
   PetscCall(make_rows(w, e->A, axis, &rows));
-  PetscCall(dvi__product(e->A, &rows, NULL, &made->coarser));
+  if (axis < 0)
+    PetscCall(make_gradients(w, e->A, &rows, &made->coarser));
+  else
+    PetscCall(dvi__product(e->A, &rows, NULL, &made->coarser));
   PetscCall(dvi__rows_clear(&rows));
   PetscCall(dvi__multigrid_create(&made->coarser.A, &made->multigrid));
   PetscCall(dvi__operator_show(&made->coarser.A, &made->shown));
@@ -277,9 +296,10 @@ static PetscErrorCode make(work *w, dvi__edges *e)
   return show_all(e);
 }
 
-PetscErrorCode dvi__edges_create(const dvi__unknowns *edges, dvi__operator *A, dvi__edges **made)
+PetscErrorCode dvi__edges_create(const dvi__unknowns *edges, dvi__operator *A,
+                                 const double *of_gradients, dvi__edges **made)
 {
-  work w = {.edges = edges};
+  work w = {.edges = edges, .of_gradients = of_gradients};
   PetscCall(PetscNew(made));
   (*made)->A = A;
   PetscCall(make(&w, *made));

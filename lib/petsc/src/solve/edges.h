@@ -8,8 +8,10 @@
 
 typedef struct dvi__edges dvi__edges;
 
-/* Prepare for a positive definite operator of a share's edges, which stays. */
-PetscErrorCode dvi__edges_create(const dvi__unknowns *edges, dvi__operator *A, dvi__edges **made);
+/* Prepare for a positive definite operator of a share's edges, which stays, and is a diagonal
+ * `of_gradients` [unknowns] for gradients. */
+PetscErrorCode dvi__edges_create(const dvi__unknowns *edges, dvi__operator *A,
+                                 const double *of_gradients, dvi__edges **made);
 PetscErrorCode dvi__edges_destroy(dvi__edges **made);
 
 /* Let a preconditioner be one cycle, which stays as long as it. */

@@ -198,7 +198,7 @@ static PetscErrorCode end_newton(SNES snes, PetscInt iteration, PetscReal size,
     *reason = SNES_DIVERGED_FNORM_NAN;
     return 0;
   }
-  if (residual == 0) *reason = SNES_CONVERGED_FNORM_ABS;
+  if (residual <= s->equations.rounding) *reason = SNES_CONVERGED_FNORM_ABS;
   if (iteration == 0) return 0;
   s->before = s->last;
   s->last = correction;
@@ -280,7 +280,7 @@ static PetscErrorCode make(solver *s, const dvi__elliptic *e)
   if (e->degree == 0)
     PetscCall(dvi__multigrid_create(&s->A, &s->multigrid));
   else
-    PetscCall(dvi__edges_create(&unknowns, &s->A, &s->edges));
+    PetscCall(dvi__edges_create(&unknowns, &s->A, e->of_gradients, &s->edges));
   if (s->numbers == 2) PetscCall(dvi__pair_create(&s->A, s->multigrid, e, s->place, &s->pair));
   PetscCall(dvi__vector_create(s->A.comm, s->numbers * own, &s->solution));
   PetscCall(VecDuplicate(s->solution, &s->residual));

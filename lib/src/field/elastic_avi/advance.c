@@ -91,6 +91,11 @@ static dvi_status stand_before_first(dvi__solid_avi *avi, double limit, dvi__sol
   const double before = avi->clock.t;
   double first = INFINITY;
   DVI_TRY(find_first_failure(avi, halt, &first));
+  if (isfinite(first) && avi->threads > 1) {
+    /* threads leave open which event is the first to fail */
+    halt = redo(avi, limit);
+    DVI_TRY(find_first_failure(avi, halt, &first));
+  }
   if (isinf(first)) return dvi__solid_complete(avi);
   dvi_status status = go_back(avi, nextafter(first, -INFINITY));
   avi->clock.t = fmin(fmax(avi->clock.t, before), limit);

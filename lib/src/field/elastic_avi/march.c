@@ -192,8 +192,9 @@ static dvi_status check_share(const dvi_elastic *e, const dvi__solid_request *re
       (e->mesh->share->ranks.send == NULL || e->mesh->share->ranks.receive == NULL))
     return dvi__fail(DVI_UNSUPPORTED, "march: processes that share avi:classes=no need send and "
                                       "receive of dvi_ranks");
-  return request->threads > 1
-             ? dvi__refuse_share_but(e->mesh, "march: a solid on several threads", "one thread")
+  return request->is_free && request->threads > 1
+             ? dvi__refuse_share_but(e->mesh, "march: avi:classes=no on several threads",
+                                     "one thread, avi")
              : DVI_OK;
 }
 
@@ -204,7 +205,7 @@ static dvi_status check_share(const dvi_elastic *e, const dvi__solid_request *re
     .name = called, .destroy = destroy, .start = start, .advance = advance, .time = time, \
     .size = size, .sample = sample, .observables = observables, .observable = observable, \
     .observe = observe, .facts = facts, .save = save, .load = load, .agree = agree,       \
-    .writes = writes, .is_lost = is_lost,                                                 \
+    .writes = writes, .is_lost = is_lost, .has_parts = 1,                                 \
   }
 
 static const dvi__march_kind kind_avi = KIND("avi"), kind_verlet = KIND("verlet");

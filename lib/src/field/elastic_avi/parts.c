@@ -20,11 +20,22 @@ static dvi_status no_memory(const dvi__solid_avi *avi)
                    avi->method, (long long)avi->active, avi->threads);
 }
 
-/* Every part gets slabs in a row. */
-static void share_out(const survey *s, const dvi__solid_plan *plan)
+/* Number the slabs of which this process has cells. Returns how many. */
+static int number_slabs(const survey *s, const dvi__solid_plan *plan, int number[])
 {
+  int count = 0;
+  for (int k = 0; k < plan->slabs; k++) number[k] = 0;
+  for (int64_t c = 0; c < s->avi->active; c++) number[plan->slab[s->avi->cell[c].name]] = 1;
+  for (int k = 0; k < plan->slabs; k++) count += number[k], number[k] = count - 1;
+  return count > 0 ? count : 1;
+}
+
+/* Every part gets slabs in a row. Where processes share the solid, a process has few of them. */
+static void share_out(const survey *s, const dvi__solid_plan *plan, int number[])
+{
+  const int slabs = number_slabs(s, plan, number);
   for (int64_t c = 0; c < s->avi->active; c++)
-    s->owner[c] = plan->slab[s->avi->cell[c].name] * s->all->count / plan->slabs;
+    s->owner[c] = number[plan->slab[s->avi->cell[c].name]] * s->all->count / slabs;
 }
 
 /* List the cells of each part. */
@@ -167,7 +178,12 @@ void dvi__solid_parts_destroy(dvi__solid_parts **parts)
 static dvi_status fill(const survey *s, const dvi__solid_plan *plan)
 {
   const int count = s->all->count;
-  if (count > 1) share_out(s, plan);
+  if (count > 1) {
+    int *number = DVI_NEW(int, plan->slabs);
+    if (number == NULL) return no_memory(s->avi);
+    share_out(s, plan, number);
+    dvi__release(number);
+  }
   list_cells(s);
   for (int k = 0; k < count && s->avi->is_free; k++)
     DVI_TRY(make_calendar(s->avi, s->all->part + k));

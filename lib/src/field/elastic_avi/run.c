@@ -43,8 +43,39 @@ dvi__solid_halt dvi__solid_run_slots(dvi__solid_avi *avi, double limit)
   }
 }
 
+/* Let the events up to a slot happen on the threads of a process. All processes count them. */
+static dvi__solid_halt run_on_threads(dvi__solid_avi *avi, int64_t slot)
+{
+  const int64_t before = avi->clock.slot, events = avi->clock.events;
+  const dvi__solid_halt halt = dvi__solid_run_parts(avi, dvi__solid_slot_time(avi, slot));
+  avi->clock.events = events;
+  for (int64_t s = before + 1; s <= slot; s++)
+    avi->clock.events += avi->class_events[dvi__solid_class_of_slot(avi, s)];
+  return halt;
+}
+
+/* Threads of a process go through all slots up to the next one in which cells between processes
+ * act. What has failed is found again on a single thread, in its order. */
+static dvi__solid_halt run_slots_on_threads(dvi__solid_avi *avi, double limit)
+{
+  dvi__solid_halt halt = {0};
+  for (;;) {
+    int64_t slot = avi->clock.slot + 1;
+    const double t = dvi__solid_slot_time(avi, slot);
+    if (!(t <= limit) || avi->is_lost) return halt;
+    const dvi__solid_halt trade = dvi__solid_trade(avi, dvi__solid_class_of_slot(avi, slot), t);
+    while (dvi__solid_class_of_slot(avi, slot + 1) < avi->borders->first_class &&
+           dvi__solid_slot_time(avi, slot + 1) <= limit)
+      slot++;
+    if (halt.returned == 0) halt = trade.returned != 0 ? trade : run_on_threads(avi, slot);
+    avi->clock.slot = slot;
+    avi->clock.t = fmax(avi->clock.t, dvi__solid_slot_time(avi, slot));
+  }
+}
+
 dvi__solid_halt dvi__solid_run(dvi__solid_avi *avi, double limit)
 {
   if (avi->neighbours != NULL) return dvi__solid_run_shared(avi, limit);
+  if (avi->borders != NULL && avi->parts != NULL) return run_slots_on_threads(avi, limit);
   return avi->parts != NULL ? dvi__solid_run_parts(avi, limit) : dvi__solid_run_slots(avi, limit);
 }

@@ -157,7 +157,7 @@ static dvi_status find_saved(const record *r, saved *own)
   *own = (saved){.vertices = dvi__whole_count(mesh, 0),
                  .cells = dvi__whole_count(mesh, avi->n),
                  .is_free = avi->is_free,
-                 .numbers = dvi__pieces_size(mesh, r->pieces, r->piece),
+                 .numbers = dvi__pieces_size(mesh, r->pieces, r->piece, NULL),
                  .clock = avi->clock};
   return find_hash(avi, &own->hash);
 }
@@ -179,9 +179,9 @@ dvi_status dvi__solid_avi_save(const dvi__solid_avi *avi, dvi__sections_writer *
   return status;
 }
 
-/* Find a state that was saved by the same solid. */
-static dvi_status find_state(const dvi__sections *sections, const saved *own, saved *other,
-                             const unsigned char **numbers)
+/* Find a state that was saved by the same solid. `held` are numbers in the section. */
+static dvi_status find_state(const dvi__sections *sections, const saved *own, int64_t held,
+                             saved *other, const unsigned char **numbers)
 {
   dvi__section section;
   DVI_TRY(dvi__section_find(sections, "elastic", VERSION, DVI__ANY_SIZE, &section));
@@ -192,7 +192,7 @@ static dvi_status find_state(const dvi__sections *sections, const saved *own, sa
   *numbers = section.content + sizeof *other;
   if (other->hash == own->hash && other->vertices == own->vertices && other->cells == own->cells &&
       other->is_free == own->is_free && other->numbers == own->numbers &&
-      section.size == sizeof *other + (size_t)own->numbers * sizeof(double))
+      section.size == sizeof *other + (size_t)held * sizeof(double))
     return DVI_OK;
   return dvi__fail(DVI_BAD_FILE,
                    "%s: it is of a solid of %lld vertices and %lld cells with other materials, "
@@ -207,9 +207,10 @@ static dvi_status load(dvi__solid_avi *avi, const dvi__sections *sections, const
   const unsigned char *numbers = NULL;
   saved own, other;
   DVI_TRY(find_saved(r, &own));
-  DVI_TRY(dvi__agree(mesh, find_state(sections, &own, &other, &numbers)));
+  const int64_t held = dvi__pieces_size(mesh, r->pieces, r->piece, sections->parts);
+  DVI_TRY(dvi__agree(mesh, find_state(sections, &own, held, &other, &numbers)));
   DVI_TRY(dvi__check_same(mesh, sections->name, sections->size, sections->bytes));
-  dvi__pieces_take(mesh, r->pieces, r->piece, numbers);
+  DVI_TRY(dvi__pieces_take(mesh, r->pieces, r->piece, sections, numbers));
   scatter(r);
   avi->clock = other.clock;
   avi->view->t = (double)NAN;

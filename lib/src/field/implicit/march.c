@@ -237,6 +237,9 @@ static dvi_status make_own(dvi__implicit_march *m)
   const dvi_field *f = m->field;
   double **const forms[] = {&m->last.q, &m->last.p, &m->shown.q, &m->shown.p, &m->E, &m->spare};
   DVI_TRY(dvi__sweep_create(f, 1, &m->sweep));
+  if (!f->is_wave && !m->sweep.is_diagonal)
+    DVI_TRY(dvi__refuse_share_but(f->mesh, "march: midpoint with a star that is not diagonal",
+                                  "the circumcentric star"));
   m->faces = f->is_wave ? 0 : m->sweep.faces;
   m->numbers = DVI_NEW(double, 6 * f->cells + 2 * m->faces + f->currents + dvi__charge_numbers(f));
   if (m->numbers == NULL) return dvi__fail(DVI_NO_MEMORY, "march: no memory for a state");
@@ -264,6 +267,7 @@ static dvi_status make(dvi__implicit_march *m)
     .size = size, .sample = dvi__implicit_sample, .observables = dvi__implicit_observables,   \
     .observable = dvi__implicit_observable, .observe = dvi__implicit_observe, .facts = facts, \
     .save = save, .load = load, .agree = agree, .writes = writes, .is_lost = is_lost,         \
+    .has_parts = 1,                                                                           \
   }
 
 static const dvi__march_kind kinds[] = {[DVI__IMPLICIT_MIDPOINT] = KIND("midpoint"),

@@ -65,7 +65,7 @@ static dvi_status find(const char *text, const method **found, const char **rest
   return dvi__fail(
       DVI_BAD_OPTION,
       "march: there is no method \"%.*s\"; there are leapfrog (also called yee and "
-      "bossavit-kettunen), avi, tents, and midpoint, imex and galerkin for waves on shares",
+      "bossavit-kettunen), avi, tents, and on shares midpoint, and for waves imex and galerkin",
       (int)length, text);
 }
 

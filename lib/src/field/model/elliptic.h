@@ -24,6 +24,9 @@ typedef struct dvi__elliptic {
   int64_t unknowns;
   const int *cell; /* [unknowns] of the degree, ascending */
   dvi_matrix A;    /* [unknowns] rows, which are right for own unknowns */
+  /* Of degree 1: the diagonal [unknowns] that A is for gradients of functions of the vertices,
+   * which a small one beside other entries would lose in roundings. Right for own unknowns */
+  const double *of_gradients;
   /* The kernel of A: constants on each of the components, which are those of all processes. */
   int64_t components;
   const int *component; /* [unknowns] or -1. May be NULL without components */
@@ -32,6 +35,7 @@ typedef struct dvi__elliptic {
   dvi_status (*residual)(void *of, const double *x, double *r);
   dvi_status (*diagonal)(void *of, const double *x, double *d); /* NULL for linear equations */
   void *of;
+  double rounding; /* the norm of residuals that are but roundings, or 0 if it is not known */
 } dvi__elliptic;
 
 typedef struct dvi__elliptic_report {

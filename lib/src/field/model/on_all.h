@@ -14,6 +14,7 @@ typedef struct dvi__field_equations {
   dvi_status (*residual)(void *of, const double *x, double *r);
   dvi_status (*diagonal)(void *of, const double *x, double *d);
   void *of;
+  double rounding; /* as in dvi__elliptic */
 } dvi__field_equations;
 
 /* A solver that is kept. All zero before. */
@@ -25,6 +26,9 @@ typedef struct dvi__on_all {
 /* Create a solver. DVI_UNSUPPORTED if the share came without one. On failure nothing is owned. */
 dvi_status dvi__on_all_create(const dvi__field_equations *equations, dvi__on_all *made);
 void dvi__on_all_clear(dvi__on_all *made);
+
+/* Solve such equations once, with the solver that came with the share. */
+dvi_status dvi__elliptic_solve_once(const dvi__elliptic *equations, double *x);
 
 /* Solve once, from x [unknowns] on. Failures have a sentence, and leave x. */
 dvi_status dvi__field_solve_on_all(const dvi__field_equations *equations, double *x,

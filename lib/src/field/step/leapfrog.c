@@ -509,6 +509,7 @@ static const dvi__march_kind kind = {
     .agree = agree,
     .writes = writes,
     .is_lost = is_lost,
+    .has_parts = 1,
 };
 
 dvi_status dvi__leapfrog_create(const dvi_field *field, const dvi__march_plan *plan,

@@ -7,6 +7,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "field/mesh/share.h"
+#include "march/parts.h"
 
 /* ---- pieces ---- */
 
@@ -16,12 +17,110 @@ static int64_t size_of(const dvi_mesh *mesh, const dvi__piece *piece)
                                                 : dvi__whole_count(mesh, piece->degree);
 }
 
-int64_t dvi__pieces_size(const dvi_mesh *mesh, int pieces, const dvi__piece *piece)
+/* Numbers of a piece in a section. */
+static int64_t held_of(const dvi_mesh *mesh, const dvi__piece *piece, const dvi__parts *parts)
+{
+  const int64_t size = size_of(mesh, piece);
+  return parts != NULL && piece->degree >= 0 && size > 0 ? 1 : size;
+}
+
+int64_t dvi__pieces_size(const dvi_mesh *mesh, int pieces, const dvi__piece *piece,
+                         const dvi__parts *parts)
 {
   int64_t sum = 0;
-  for (int i = 0; i < pieces; i++) sum += size_of(mesh, piece + i);
+  for (int i = 0; i < pieces; i++) sum += held_of(mesh, piece + i, parts);
   return sum;
 }
+
+/* ---- parts ---- */
+
+static int is_in_parts(const dvi__piece *piece, const dvi__parts *parts)
+{
+  return parts != NULL && piece->degree >= 0 && piece->count > 0;
+}
+
+static dvi__part_rows part_rows(const dvi_mesh *mesh, int array, const dvi__piece *piece)
+{
+  const dvi__share *s = mesh->share;
+  return (dvi__part_rows){.array = array,
+                          .total = size_of(mesh, piece),
+                          .listed = piece->count,
+                          .number = s != NULL ? s->number[piece->degree] : NULL,
+                          .owner = s != NULL ? s->owner[piece->degree] : NULL};
+}
+
+/* Give a hash of a form of the whole mesh, which does not depend on the division. */
+static dvi_status hash_form(const dvi_mesh *mesh, const dvi__piece *piece, uint64_t *hash)
+{
+  uint64_t sum = 0;
+  for (int64_t c = 0; c < piece->count; c++) {
+    if (!dvi__owns(mesh, piece->degree, c)) continue;
+    int64_t row[2] = {dvi__whole_number(mesh, piece->degree, c)};
+    memcpy(row + 1, piece->value + c, sizeof *row);
+    sum += dvi__hash(DVI__HASH_START, sizeof row, row);
+  }
+  DVI_TRY(dvi__sum_modulo(mesh, &sum));
+  *hash = sum;
+  return DVI_OK;
+}
+
+static dvi_status put_part(const dvi_mesh *mesh, int array, const dvi__piece *piece,
+                           dvi__sections_writer *writer)
+{
+  const dvi__part_rows rows = part_rows(mesh, array, piece);
+  uint64_t hash = 0;
+  DVI_TRY(hash_form(mesh, piece, &hash));
+  dvi__section_put(writer, &hash, sizeof hash);
+  return writer->parts->put(writer->parts->of, &rows, piece->value);
+}
+
+static dvi_status take_part(const dvi_mesh *mesh, int array, const dvi__piece *piece,
+                            const dvi__sections *sections, const unsigned char *numbers)
+{
+  const dvi__part_rows rows = part_rows(mesh, array, piece);
+  uint64_t hash = 0;
+  DVI_TRY(sections->parts->take(sections->parts->of, &rows, piece->value));
+  DVI_TRY(hash_form(mesh, piece, &hash));
+  if (memcmp(&hash, numbers, sizeof hash) == 0) return DVI_OK;
+  return dvi__fail(DVI_BAD_FILE, "%s: damaged (the checksum of an array is wrong)", sections->name);
+}
+
+/* Take all pieces to `room`, those that are no parts, too. */
+static dvi_status take_parts(const dvi_mesh *mesh, int pieces, const dvi__piece *piece,
+                             const dvi__sections *sections, const unsigned char *numbers,
+                             double *room)
+{
+  for (int i = 0; i < pieces; i++) {
+    const dvi__piece here = {piece[i].degree, piece[i].count, room};
+    if (is_in_parts(piece + i, sections->parts))
+      DVI_TRY(take_part(mesh, i, &here, sections, numbers));
+    else
+      memcpy(room, numbers, (size_t)here.count * sizeof *room);
+    room += here.count;
+    numbers += (size_t)held_of(mesh, piece + i, sections->parts) * sizeof *room;
+  }
+  return DVI_OK;
+}
+
+/* Replace all pieces or none. */
+static dvi_status replace(const dvi_mesh *mesh, int pieces, const dvi__piece *piece,
+                          const dvi__sections *sections, const unsigned char *numbers)
+{
+  int64_t count = 0;
+  for (int i = 0; i < pieces; i++) count += piece[i].count;
+  double *room = DVI_NEW(double, count);
+  dvi_status status = dvi__agree(
+      mesh, room != NULL ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "march: no memory to load"));
+  if (status == DVI_OK && room != NULL)
+    status = take_parts(mesh, pieces, piece, sections, numbers, room);
+  if (status == DVI_OK && room != NULL)
+    for (int64_t i = 0, at = 0; i < pieces; at += piece[i++].count)
+      memcpy(piece[i].value, room + at, (size_t)piece[i].count * sizeof *room);
+  dvi__release(room);
+  return status;
+}
+
+/* ---- whole numbers ---- */
 
 typedef struct form {
   const dvi_mesh *mesh;
@@ -61,7 +160,9 @@ dvi_status dvi__pieces_put(const dvi_mesh *mesh, int pieces, const dvi__piece *p
                                            ? DVI_OK
                                            : dvi__fail(DVI_NO_MEMORY, "march: no memory to save"));
   for (int i = 0; i < pieces && status == DVI_OK; i++) {
-    if (room != NULL && piece[i].degree >= 0)
+    if (is_in_parts(piece + i, writer->parts))
+      status = put_part(mesh, i, piece + i, writer);
+    else if (room != NULL && piece[i].degree >= 0)
       status = put_form(mesh, piece + i, room, writer);
     else
       dvi__section_put(writer, piece[i].value, (size_t)piece[i].count * sizeof(double));
@@ -70,9 +171,10 @@ dvi_status dvi__pieces_put(const dvi_mesh *mesh, int pieces, const dvi__piece *p
   return status;
 }
 
-void dvi__pieces_take(const dvi_mesh *mesh, int pieces, const dvi__piece *piece,
-                      const unsigned char *numbers)
+dvi_status dvi__pieces_take(const dvi_mesh *mesh, int pieces, const dvi__piece *piece,
+                            const dvi__sections *sections, const unsigned char *numbers)
 {
+  if (sections->parts != NULL) return replace(mesh, pieces, piece, sections, numbers);
   for (int i = 0; i < pieces; i++) {
     const int k = piece[i].degree;
     for (int64_t c = 0; c < piece[i].count; c++) {
@@ -81,6 +183,7 @@ void dvi__pieces_take(const dvi_mesh *mesh, int pieces, const dvi__piece *piece,
     }
     numbers += (size_t)size_of(mesh, piece + i) * sizeof(double);
   }
+  return DVI_OK;
 }
 
 /* ---- hashes ---- */
@@ -199,7 +302,8 @@ static dvi_status find_saved(const dvi__saved_march *march, const dvi__sections 
                              dvi__march_place *at, dvi__section *forms)
 {
   dvi__section found;
-  const size_t numbers = (size_t)dvi__pieces_size(march->mesh, march->pieces, march->piece);
+  const size_t numbers = (size_t)dvi__pieces_size(march->mesh, march->pieces, march->piece,
+                                                  sections->parts);
   DVI_TRY(refuse_integrator(march, sections));
   DVI_TRY(dvi__section_find(sections, march->method, march->version, sizeof *at, &found));
   memcpy(at, found.content, sizeof *at);
@@ -214,7 +318,7 @@ dvi_status dvi__saved_march_take(const dvi__saved_march *march, const dvi__secti
   const dvi_status found = dvi__agree(march->mesh, find_saved(march, sections, &at, &forms));
   if (found != DVI_OK || forms.content == NULL) return found;
   DVI_TRY(dvi__check_same(march->mesh, sections->name, sections->size, sections->bytes));
+  DVI_TRY(dvi__pieces_take(march->mesh, march->pieces, march->piece, sections, forms.content));
   *march->at = at;
-  dvi__pieces_take(march->mesh, march->pieces, march->piece, forms.content);
   return DVI_OK;
 }

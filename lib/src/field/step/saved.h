@@ -36,17 +36,20 @@ dvi_status dvi__saved_march_put(const dvi__saved_march *march, dvi__sections_wri
  * processes, and changes nothing. */
 dvi_status dvi__saved_march_take(const dvi__saved_march *march, const dvi__sections *sections);
 
-/* Return how many numbers of the whole mesh the pieces have together. */
-int64_t dvi__pieces_size(const dvi_mesh *mesh, int pieces, const dvi__piece *piece);
+/* Return how many numbers of 8 bytes the pieces have in a section. Of a form that parts hold it has
+ * a hash alone. */
+int64_t dvi__pieces_size(const dvi_mesh *mesh, int pieces, const dvi__piece *piece,
+                         const struct dvi__parts *parts);
 
 /* Put the pieces' numbers of the whole mesh into the open section, every bit as it is. Called on
  * all processes, of which those may have a writer without memory that do not need the file. */
 dvi_status dvi__pieces_put(const dvi_mesh *mesh, int pieces, const dvi__piece *piece,
                            dvi__sections_writer *writer);
 
-/* Fill the pieces with numbers of the whole mesh [dvi__pieces_size]. */
-void dvi__pieces_take(const dvi_mesh *mesh, int pieces, const dvi__piece *piece,
-                      const unsigned char *numbers);
+/* Fill the pieces with numbers of the whole mesh [dvi__pieces_size], or of the parts of sections.
+ * Called on all processes. After a failure nothing is changed. */
+dvi_status dvi__pieces_take(const dvi_mesh *mesh, int pieces, const dvi__piece *piece,
+                            const dvi__sections *sections, const unsigned char *numbers);
 
 /* Give a hash of what distinguishes a field from others, its coefficients cell by cell. It is the
  * same for all divisions of the mesh. Called on all processes. */

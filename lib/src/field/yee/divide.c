@@ -78,14 +78,15 @@ static int choose_parts(const dvi_yee_ranks *r, dvi__yee *y)
 
 static dvi_status refuse_parts(const dvi_yee_ranks *r, const dvi__yee *y)
 {
-  char parts[96] = "";
-  if (r->parts[0] != 0 || r->parts[1] != 0 || r->parts[2] != 0)
-    (void)snprintf(parts, sizeof parts, " by %d x %d x %d parts, where 0 is any number,",
-                   r->parts[0], r->parts[1], r->parts[2]);
+  const int *parts = r->parts;
+  char asked[128] = "";
+  if (parts[0] > 0 || parts[1] > 0 || parts[2] > 0)
+    (void)snprintf(asked, sizeof asked, " by %d x %d x %d parts, where 0 is any number,", parts[0],
+                   parts[1], parts[2]);
   return dvi__fail(DVI_BAD_ARGUMENT,
                    "yee: %d x %d x %d boxes cannot be divided among %d processes%s so that each of "
                    "them has 2 boxes of y and of z; run fewer processes",
-                   y->axis[0].cells, y->axis[1].cells, y->axis[2].cells, r->count, parts);
+                   y->axis[0].cells, y->axis[1].cells, y->axis[2].cells, r->count, asked);
 }
 
 static dvi_status take_parts(const dvi_yee_ranks *r, dvi__yee *y)

@@ -193,34 +193,76 @@ static bool add_weight(dvi_scene *scene, const char *part, double density)
   return true;
 }
 
+/* The first material of a density, counted from 1. */
+static int kind_of(const struct dvi__scene_elastic *s, int material)
+{
+  int i = 0;
+  while (s->material[i].rho != s->material[material].rho) i++;
+  return i + 1;
+}
+
+static double density_of(const struct dvi__scene_elastic *s, int kind)
+{
+  return kind > 0 ? s->material[kind - 1].rho : 0;
+}
+
+/* Add the weight of a material to what others say of its cells. `kind` [cells] has the densities so
+ * far. Processes count together whether there was only one. */
+static bool weigh_material(dvi_scene *scene, int i, int *kind)
+{
+  struct dvi__scene_elastic *s = scene->field->elastic;
+  int64_t count;
+  const dvi_elastic_material *m = s->material + i;
+  const int *cell = dvi_mesh_part_cells(scene->field->mesh, m->part, scene->field->dimension,
+                                        &count);
+  const int before = count > 0 ? kind[cell[0]] : 0, after = kind_of(s, i);
+  for (int64_t k = 0; k < count; k++) {
+    const int other = kind[cell[k]];
+    if (other != before && s->weighed == NULL)
+      return dvi__scene_refuse(scene, s->material_span[i],
+                               "with gravity the part '%s' must lie in one other material, and "
+                               "some of its cells have the density %g, and others %g",
+                               m->part, density_of(s, before), density_of(s, other));
+    for (int power = 0; power < 3 && s->weighed != NULL; power++)
+      s->weighed[3 * i + power] += power == 0 ? 1 : power == 1 ? other : other * other;
+    kind[cell[k]] = after;
+  }
+  return add_weight(scene, m->part, m->rho - density_of(s, before));
+}
+
 /* The last material of a cell counts, and loads add up. So the load of a part is that of its
  * density beside the one that its cells had before, which is the same in all of them. */
 bool dvi__solid_add_gravity(dvi_scene *scene)
 {
   struct dvi__scene_elastic *s = scene->field->elastic;
-  const dvi_mesh *mesh = scene->field->mesh;
-  const int n = scene->field->dimension;
+  const int64_t cells = dvi_mesh_count(scene->field->mesh, scene->field->dimension);
   if (s->gravity == NULL) return true;
-  if (s->materials > 1 && dvi__is_share(scene))
-    return dvi__complain(scene->complaint, DVI_UNSUPPORTED, s->gravity->span,
-                         "gravity on several materials needs the whole mesh, and this is the share "
-                         "of one of several processes: give each part its force per volume");
-  double *rho = dvi__arena_take(&scene->arena, (size_t)dvi_mesh_count(mesh, n), sizeof *rho);
-  if (rho == NULL) return dvi__scene_no_memory(scene);
+  int *kind = dvi__arena_take(&scene->arena, (size_t)cells, sizeof *kind);
+  if (kind == NULL) return dvi__scene_no_memory(scene);
+  if (dvi__is_share(scene)) {
+    s->weighed = dvi__arena_take(&scene->arena, 3 * (size_t)s->materials, sizeof *s->weighed);
+    if (s->weighed == NULL) return dvi__scene_no_memory(scene);
+  }
+  for (int i = 0; i < s->materials; i++)
+    if (!weigh_material(scene, i, kind)) return false;
+  return true;
+}
+
+/* N numbers whose sums are k N, and of their squares k k N, are all k. */
+bool dvi__solid_check_gravity(dvi_scene *scene)
+{
+  struct dvi__scene_elastic *s = scene->field->elastic;
+  if (s->weighed == NULL) return true;
+  const dvi_status status = dvi_elastic_sum(s->solid, 3 * s->materials, s->weighed);
+  if (status != DVI_OK)
+    return dvi__complain(scene->complaint, status, s->gravity->span, "%s", dvi_last_error());
   for (int i = 0; i < s->materials; i++) {
-    int64_t count;
-    const dvi_elastic_material *m = s->material + i;
-    const int *cell = dvi_mesh_part_cells(mesh, m->part, n, &count);
-    const double before = count > 0 ? rho[cell[0]] : 0;
-    for (int64_t k = 0; k < count; k++) {
-      if (rho[cell[k]] != before)
-        return dvi__scene_refuse(scene, s->material_span[i],
-                                 "with gravity the part '%s' must lie in one other material, and "
-                                 "some of its cells have the density %g, and others %g",
-                                 m->part, before, rho[cell[k]]);
-      rho[cell[k]] = m->rho;
-    }
-    if (!add_weight(scene, m->part, m->rho - before)) return false;
+    const double *sum = s->weighed + 3 * i, kind = sum[0] > 0 ? rint(sum[1] / sum[0]) : 0;
+    if (sum[1] != kind * sum[0] || sum[2] != kind * kind * sum[0])
+      return dvi__scene_refuse(scene, s->material_span[i],
+                               "with gravity the part '%s' must lie in one other material, and its "
+                               "cells have several densities",
+                               s->material[i].part);
   }
   return true;
 }

@@ -60,6 +60,7 @@ struct dvi__scene_elastic {
   int materials, conditions, loads, obstacles, probes;
   const dvi__tree *gravity;
   double acceleration[DVI__SOLID_AXES];
+  double *weighed; /* [materials*3] of a share: cells with gravity, and powers of their kinds */
   dvi__solid_function *value, *rate; /* the start, NULL for 0 */
   double *u, *velocity;              /* [vertices*n] the start */
 };
@@ -80,6 +81,9 @@ int dvi__solid_energy(int64_t count, const double *F, double *W, double *P, doub
 
 /* Turn gravity into loads of the parts that have materials. */
 bool dvi__solid_add_gravity(dvi_scene *scene);
+
+/* Refuse a part whose cells have several densities beside its own, on all processes. */
+bool dvi__solid_check_gravity(dvi_scene *scene);
 
 /* Find the cells of the probes, and let the scene watch these. */
 bool dvi__solid_place_probes(dvi_scene *scene);

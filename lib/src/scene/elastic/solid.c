@@ -219,9 +219,9 @@ bool dvi__elastic_make(dvi_scene *scene, const dvi__tree *section)
   if (status != DVI_OK) return complain(scene, section, status);
   scene->form = "separable";
   scene->mass = "diagonal";
-  return dvi__declare_unknowns(scene, section, "u") && make_all_starts(scene, section) &&
-         check_start(scene, section) && dvi__solid_place_probes(scene) &&
-         dvi__choose_field_columns(scene);
+  return dvi__solid_check_gravity(scene) && dvi__declare_unknowns(scene, section, "u") &&
+         make_all_starts(scene, section) && check_start(scene, section) &&
+         dvi__solid_place_probes(scene) && dvi__choose_field_columns(scene);
 }
 
 dvi_status dvi__elastic_fastest(const dvi_scene *scene, double *omega)

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "scene/field/boxes.h"
 #include "scene/field/maxwell.h"
 #include "scene/sections/sections.h"
 #include "text/heap.h"
@@ -227,84 +228,14 @@ dvi_status dvi__grid_march(const dvi_scene *scene, const dvi_march_options *opti
 
 /* ---- vectors in the boxes ---- */
 
-/* Where a component's values are: that of a place is at `first` plus its index times `next`. */
-typedef struct layout {
-  int64_t first, next[3]; /* first is -1 if there is no such component */
-} layout;
-
-static layout layout_of(const draft *d, dvi_march_form form, int component)
-{
-  static const int corner[3] = {0}, next[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  layout found = {.first = dvi_yee_place(&d->terms, form, component, corner)};
-  for (int a = 0; a < d->field->dimension; a++) {
-    const int64_t place = dvi_yee_place(&d->terms, form, component, next[a]);
-    if (place >= 0) found.next[a] = place - found.first;
-  }
-  return found;
-}
-
-/* Give the mean of a component's values around a box, each divided by its cell. A component has
- * places at both ends of the box along the axes across its cell, of which a grid that repeats
- * itself has one less. */
-static double mean_in_box(const draft *d, const layout *of, unsigned along, const double *values,
-                          const int *box, const double *length)
-{
-  double sum = 0;
-  int count = 0;
-  const int axes = d->field->dimension;
-  for (unsigned corner = 0; corner < 1u << axes && of->first >= 0; corner++) {
-    int64_t place = of->first;
-    double size = 1;
-    if ((corner & along) != 0) continue;
-    for (int a = 0; a < axes; a++) {
-      int index = box[a] + (int)(corner >> a & 1);
-      if (d->terms.axis[a].end[0].kind == DVI_YEE_PERIODIC ||
-          d->terms.axis[a].end[0].kind == DVI_YEE_BLOCH)
-        index %= d->terms.axis[a].cells;
-      if ((along >> a & 1) != 0) size *= length[a];
-      place += index * of->next[a];
-    }
-    sum += values[place] / size;
-    count++;
-  }
-  return count > 0 ? sum / count : 0;
-}
-
-static double length_of(const draft *d, int axis, int box)
-{
-  const dvi_yee_axis *a = d->terms.axis + axis;
-  if (a->node != NULL) return a->node[box + 1] - a->node[box];
-  return (a->upper - a->lower) / a->cells;
-}
-
-static void fill_vectors(const draft *d, dvi_march_form form, const double *values, double *vector)
-{
-  int box[3] = {0}, cells[3] = {1, 1, 1};
-  layout of[3];
-  for (int a = 0; a < d->field->dimension; a++) cells[a] = d->terms.axis[a].cells;
-  for (int component = 0; component < 3; component++) of[component] = layout_of(d, form, component);
-  for (box[2] = 0; box[2] < cells[2]; box[2]++)
-    for (box[1] = 0; box[1] < cells[1]; box[1]++)
-      for (box[0] = 0; box[0] < cells[0]; box[0]++, vector += 3) {
-        double length[3];
-        for (int a = 0; a < d->field->dimension; a++) length[a] = length_of(d, a, box[a]);
-        for (int component = 0; component < 3; component++) {
-          const unsigned axis = 1u << component, along = form == DVI_FORM_E ? axis : 7u ^ axis;
-          vector[component] = mean_in_box(d, of + component, along, values, box, length);
-        }
-      }
-}
-
 dvi_status dvi__grid_vectors(const dvi_scene *scene, const dvi_march *march, dvi_march_form form,
                              double *vector)
 {
   draft d = {.field = scene->field, .maxwell = scene->field->maxwell};
   const dvi_march_options none = {.size = sizeof none};
-  double *values = dvi__heap_take((size_t)dvi_march_size(march, form), sizeof *values);
-  dvi_status status = values != NULL ? set_terms(&d, &none) : DVI_NO_MEMORY;
-  if (status == DVI_OK) status = dvi_march_sample(march, form, 0, NULL, values);
-  if (status == DVI_OK) fill_vectors(&d, form, values, vector);
-  dvi__heap_free(values);
+  dvi_status status = dvi__boxes_agree(d.field->ranks, set_terms(&d, &none));
+  if (status == DVI_OK)
+    status = dvi__boxes_vectors(&d.terms, scene->field->mesh, march, form, vector);
   clear(&d);
   return status;
 }
