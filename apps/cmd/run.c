@@ -121,21 +121,24 @@ static int complete_request(run_request *request, const problem *scene, double t
 }
 
 /* Refuse the names of states in parts, which mechanical systems do not have. */
-static int check_states(const run_request *request)
+static int check_states(const run_request *request, const problem *scene)
 {
   const char *const path[] = {request->checkpoint, request->resume};
   for (int i = 0; i < 2; i++)
     if (ranks_part_state(path[i]))
       return usage_error("run: '%s' is a state in parts by its name, which marches of fields on "
-                         "meshes have, and %s has not; give another name",
-                         path[i], request->method);
+                         "meshes have, and %s of one process has not; give another name%s",
+                         path[i], request->method,
+                         share_is_implicit(request->method) && dvi_scene_field(scene->scene) != NULL
+                             ? ", or start 2 processes or more by mpirun"
+                             : "");
   return DONE;
 }
 
 static int run_integrator(run_request *request, const problem *scene)
 {
   dvi_integrator *integrator = NULL;
-  int code = check_states(request);
+  int code = check_states(request, scene);
   if (code == DONE) code = open_paced(scene, request->method, &request->how, &integrator);
   if (code == DONE && !place_start(request, scene, integrator)) code = FAILED;
   if (code == DONE) code = complete_request(request, scene, dvi_integrator_time(integrator));

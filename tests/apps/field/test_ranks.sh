@@ -33,6 +33,11 @@ same whole.csv rest.csv 'one goes on from a state of three'
 expect 2 'a state of a mechanical system' run kepler --method verlet \
   --h 0.1 --checkpoint a.h5
 says err 'is a state in parts by its name' 'a state of a mechanical system'
+expect 2 'a state in parts of one process' run kink.yaml --method midpoint --h 0.05 \
+  --resume all.h5
+says err 'midpoint of one process .* or start 2 processes or more' 'a state in parts of one process'
+expect 1 'a state as a mesh' mesh all.h5
+says err 'its layout is "dvi state 1" and not "dvi mesh 1"' 'a state as a mesh'
 
 # A mesh that processes read in parts.
 sed 's/^mesh: .*/mesh: {file: torus.h5}/' torus.yaml >parts.yaml
