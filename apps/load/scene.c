@@ -206,9 +206,12 @@ int scene_open_share(const char *path, const words *settings, const dvi_scene_di
 
 int scene_open(const char *path, const words *settings, problem **scene)
 {
-  const dvi_scene_division division = {
-      .size = sizeof division, .divide = ranks_divide, .read = ranks_read, .grid = ranks_grid()};
-  return scene_open_share(path, settings, ranks_count() > 1 ? &division : NULL, scene);
+  const dvi_scene_division shared = {.size = sizeof shared,
+                                     .divide = ranks_divide,
+                                     .read = ranks_read,
+                                     .grid = ranks_grid()},
+                           whole = {.size = sizeof whole, .read = ranks_read_whole};
+  return scene_open_share(path, settings, ranks_count() > 1 ? &shared : &whole, scene);
 }
 
 int scene_parse(const char *path, const scene_text *text, const words *settings, problem **scene)

@@ -211,6 +211,30 @@ static int load_writer(const char *path, const char *what)
                            path, what, dlerror());
 }
 
+static const petsc_module *reader; /* of files in parts, in a process that is alone */
+
+static void end_reader(void)
+{
+  reader->end();
+}
+
+/* MPI can be started once in a process, and ends with it. */
+static void start_reader(void)
+{
+  int rank, count;
+  const petsc_module *found = load();
+  if (found == NULL || !found->start(&rank, &count)) return;
+  reader = found;
+  (void)atexit(end_reader);
+}
+
+dvi_status ranks_read_whole(const char *path, dvi_mesh **mesh, void *user)
+{
+  (void)user;
+  if (reader == NULL) start_reader();
+  return reader != NULL ? reader->read_whole(path, mesh) : DVI_OK;
+}
+
 int ranks_write_mesh(const dvi_mesh *mesh, const char *path)
 {
   const int code = load_writer(path, "mesh");

@@ -44,6 +44,10 @@ dvi_status ranks_divide(const dvi_mesh *mesh, dvi_mesh **share, void *user);
 /** Read a share from a file of HDF5 in parts, as its other callback. */
 dvi_status ranks_read(const char *path, dvi_mesh **share, void *user);
 
+/** Read the whole mesh of such a file in a process that is alone, as the same callback. Without a
+ *  module for it *mesh stays as it is. */
+dvi_status ranks_read_whole(const char *path, dvi_mesh **mesh, void *user);
+
 /** Read the whole mesh of such a file in a process that is alone. Returns DONE, or complains and
  * returns the exit code. */
 int ranks_read_mesh(const char *path, dvi_mesh **mesh);

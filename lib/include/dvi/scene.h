@@ -115,10 +115,12 @@ struct dvi_yee_ranks; /* of <dvi/yee.h> */
 typedef struct dvi_scene_division {
   size_t size; /**< sizeof(dvi_scene_division) */
   /** Cut the share out of the whole mesh: dvi_mesh_cut, or dvi_mesh_divide of <dvi/petsc.h>.
-   *  Returns DVI_OK, or the status of dvi_last_error() */
+   *  Returns DVI_OK, or the status of dvi_last_error(). NULL: the mesh stays whole, and the scene
+   *  is one of dvi_scene_read */
   dvi_status (*divide)(const dvi_mesh *mesh, dvi_mesh **share, void *user);
   /** Read the share from a file whose name ends in .h5: dvi_mesh_read_divided of <dvi/petsc.h>.
-   *  Returns likewise. NULL: such files are refused, as they are by dvi_scene_read */
+   *  Returns likewise. NULL, or if *share stays NULL: such files are refused, as they are by
+   *  dvi_scene_read */
   dvi_status (*read)(const char *path, dvi_mesh **share, void *user);
   void *user;
   /** Those among which marches by yee divide a grid, for as long as there are marches. NULL if such

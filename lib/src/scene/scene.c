@@ -247,10 +247,13 @@ dvi_status dvi_scene_read_share(const char *path, const dvi_scene_division *divi
                                 char *message, size_t size)
 {
   if (scene != NULL) *scene = NULL;
-  if (division == NULL || division->size != sizeof *division || division->divide == NULL)
+  if (division == NULL || division->size != sizeof *division ||
+      (division->divide == NULL && division->read == NULL))
     return write_failure(message, size, DVI_BAD_ARGUMENT, "scene");
   dvi_status status = read_path(path, division, setting_count, settings, scene, message, size);
-  if (status != DVI_OK || dvi__is_share(*scene) || dvi__has_divided_grid(*scene)) return status;
+  if (status != DVI_OK || division->divide == NULL || dvi__is_share(*scene) ||
+      dvi__has_divided_grid(*scene))
+    return status;
   tell(*scene, dvi__motion_section(*scene),
        "several processes share fields of waves, Maxwell's and solids on meshes, and this scene "
        "has none: run it in one process",

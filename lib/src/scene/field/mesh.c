@@ -108,17 +108,20 @@ static bool is_in_parts(const char *path)
 static bool read_parts(dvi_scene *scene, const dvi__tree *file, const char *path, int space)
 {
   const dvi_scene_division *division = scene->division;
+  dvi_mesh **mesh = &scene->field->mesh;
   if (space != 0)
     return dvi__complain(scene->complaint, DVI_BAD_OPTION, file->span,
                          "the points of '%s' have the coordinates that were written: leave space "
                          "out",
                          file->text);
-  if (division == NULL || division->read == NULL)
-    return dvi__complain(scene->complaint, DVI_UNSUPPORTED, file->span,
-                         "several processes read '%s' in parts (mpirun -np 2 dvi run); for one "
-                         "process dvi mesh writes a file of MSH, OFF or PLY of it",
-                         file->text);
-  return report_file(scene, file, division->read(path, &scene->field->mesh, division->user));
+  if (division != NULL && division->read != NULL &&
+      !report_file(scene, file, division->read(path, mesh, division->user)))
+    return false;
+  return *mesh != NULL ||
+         dvi__complain(scene->complaint, DVI_UNSUPPORTED, file->span,
+                       "'%s' is a mesh in parts, which dvi run reads if it is built with "
+                       "-DDVI_PETSC=ON; dvi mesh writes a file of MSH, OFF or PLY of it",
+                       file->text);
 }
 
 static bool read_file(dvi_scene *scene, const dvi__tree *section, const dvi__tree *file)
@@ -170,7 +173,7 @@ static bool take_share(dvi_scene *scene, const dvi__tree *section)
 {
   struct dvi__scene_field *f = scene->field;
   dvi_mesh *share = NULL;
-  if (scene->division == NULL) return true;
+  if (scene->division == NULL || scene->division->divide == NULL) return true;
   if (f->is_grid && f->maxwell != NULL) f->ranks = scene->division->grid;
   if (f->mesh == NULL && f->ranks != NULL) return true;
   if (dvi__has_density(scene))
