@@ -147,8 +147,18 @@ static int start(const subcommand *s, int argc, char **argv)
                      s->alone);
 }
 
+/* What is no command is told by the first process alone. */
+static bool is_silent(void)
+{
+  int rank;
+  return started_processes(&rank) > 1 && rank > 0;
+}
+
 static int dispatch(int argc, char **argv)
 {
+  for (const subcommand *s = subcommands; argc > 1 && s->name != NULL; s++)
+    if (strcmp(argv[1], s->name) == 0) return start(s, argc - 2, argv + 2);
+  if (is_silent()) return DONE;
   if (argc < 2) {
     (void)fputs(help, stderr);
     return USAGE;
@@ -167,8 +177,6 @@ static int dispatch(int argc, char **argv)
     print_version();
     return DONE;
   }
-  for (const subcommand *s = subcommands; s->name != NULL; s++)
-    if (strcmp(argv[1], s->name) == 0) return start(s, argc - 2, argv + 2);
   char near[128];
   return usage_error("unknown command '%s'%s; see dvi --help", argv[1],
                      suggestion(argv[1], subcommand_at, subcommands, near, sizeof near));

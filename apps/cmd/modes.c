@@ -241,7 +241,7 @@ static const char *const details[] = {
     "schroedinger "
     "they are the energies of stationary states without interaction, each once.\n",
     "mpirun -np N dvi modes SCENE.yaml lets N processes share the mesh of a wave or of Maxwell's "
-    "field.\n",
+    "field. --vtu takes one process.\n",
     "Columns of --csv: index, eigenvalue, omega, ascending. Columns of --shapes: the position of "
     "the vertices, and the value of each component of each mode.\n",
     "Examples:\n"

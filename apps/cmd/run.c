@@ -121,21 +121,24 @@ static int complete_request(run_request *request, const problem *scene, double t
 }
 
 /* Refuse the names of states in parts, which mechanical systems do not have. */
-static int check_states(const run_request *request)
+static int check_states(const run_request *request, const problem *scene)
 {
   const char *const path[] = {request->checkpoint, request->resume};
   for (int i = 0; i < 2; i++)
     if (ranks_part_state(path[i]))
       return usage_error("run: '%s' is a state in parts by its name, which marches of fields on "
-                         "meshes have, and %s has not; give another name",
-                         path[i], request->method);
+                         "meshes have, and %s of one process has not; give another name%s",
+                         path[i], request->method,
+                         share_is_implicit(request->method) && dvi_scene_field(scene->scene) != NULL
+                             ? ", or start 2 processes or more by mpirun"
+                             : "");
   return DONE;
 }
 
 static int run_integrator(run_request *request, const problem *scene)
 {
   dvi_integrator *integrator = NULL;
-  int code = check_states(request);
+  int code = check_states(request, scene);
   if (code == DONE) code = open_paced(scene, request->method, &request->how, &integrator);
   if (code == DONE && !place_start(request, scene, integrator)) code = FAILED;
   if (code == DONE) code = complete_request(request, scene, dvi_integrator_time(integrator));
@@ -347,7 +350,10 @@ static const char *const details[] = {
     "potentials 10 % are told. The exit code is 0 all the same.\n",
     "mpirun -np N dvi run SCENE.yaml: N processes share the mesh of a wave, of Maxwell's field or "
     "of a solid, or a grid of yee.\n"
-    "The rows are those of one process (docs/fields/processes.md).\n",
+    "The rows are those of one process, by midpoint, imex and galerkin up to roundoff. A mesh that "
+    "is too large for one\n"
+    "process is read in parts from the file of dvi mesh FILE --write mesh.h5 "
+    "(docs/fields/processes.md).\n",
     "--verify runs the whole job with h, h/2 and h/4, and, for up to 500 coordinates, by IDA, "
     "where that takes no longer than\n"
     "these runs, or 2 s, and prints for each column its value at the end with h, an estimate of "

@@ -103,7 +103,9 @@ static void print_weak(FILE *stream, const ranks_bench *b)
        "numbers of 64 bits"},
       {machine_memory() / b->whole.state_bytes,
        "a saved state, which the first rank holds and writes alone",
-       "files that all ranks write (parallel HDF5)"}};
+       b->whole.kind == TIMED_GRID ? "files that all ranks write"
+                                   : "a state in parts, which all ranks write (--checkpoint "
+                                     "FILE.h5)"}};
   enum { LIMITS = sizeof list / sizeof *list };
   sort(LIMITS, list);
   if (b->is_in_parts)

@@ -296,9 +296,12 @@ says err 'another step' 'a fraction of a shorter span'
 expect 0 'checkpoints on the way' run box.yaml --checkpoint-every 7 --checkpoint part.state --final
 expect 0 'the end is reached' run box.yaml --resume part.state --final
 expect 1 'the state of another method' run box.yaml --method avi --resume part.state
-says err "no section 'avi'" 'the state of another method'
+says err "no section 'avi': another method has saved it" 'the state of another method'
 expect 1 'the state of another step' run box.yaml --h 0.04 --resume part.state
 says err 'another' 'the state of another step'
+sed 's/eps: 2/eps: 3/' box.yaml >other.yaml
+expect 1 'the state of another field' run other.yaml --resume part.state
+says err 'is of another field: its mesh, materials' 'the state of another field'
 expect 1 'no state' run box.yaml --resume rows.csv
 says err 'no saved state' 'no state'
 head -c 300 part.state >short.state

@@ -41,7 +41,8 @@ START_TEST(sections_are_found_by_name_version_and_size)
   ck_assert_int_eq(dvi__section_find(&s, "first", 1, 8, &found), DVI_BAD_FILE);
   ck_assert_str_eq(dvi_last_error(), "state: section 'first' has 24 bytes instead of 8");
   ck_assert_int_eq(dvi__section_find(&s, "last", 1, 8, &found), DVI_BAD_FILE);
-  ck_assert_str_eq(dvi_last_error(), "state: it has no section 'last'");
+  ck_assert_str_eq(dvi_last_error(),
+                   "state: it has no section 'last': another method has saved it");
   dvi__release(w.bytes);
 }
 END_TEST

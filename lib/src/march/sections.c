@@ -229,7 +229,8 @@ dvi_status dvi__section_find(const dvi__sections *s, const char *name, uint32_t 
     DVI_TRY(check_section(s, at, &header, &next));
     if (section_is_named(&header, name)) break;
     if (section_is_named(&header, end_name))
-      return dvi__fail(DVI_BAD_FILE, "%s: it has no section '%s'", s->name, name);
+      return dvi__fail(DVI_BAD_FILE, "%s: it has no section '%s': another method has saved it",
+                       s->name, name);
   }
   if (header.version != version)
     return dvi__fail(DVI_BAD_FILE,

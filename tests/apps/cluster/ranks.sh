@@ -257,6 +257,12 @@ together 2 'kepler is none' kepler
 together 2 'leapfrog, midpoint, imex and galerkin alone, not verlet' wave.yaml --method verlet
 # The process that owns the stiffest cell speaks.
 together 1 'the step 1 is not below the bound' wave.yaml --h 1
+# That cell is at one end of a string, and then at the other one: the first process is silent once.
+for stiff in '1 + 9*x' '10 - 9*x'; do
+  sed -e "s/rho: .*/rho: 1, a: $stiff}/" -e 's/exp(.*)/x*(1 - x)/' \
+    -e 's/^mesh: .*/mesh: {generator: interval, cells: 40}/' wave.yaml >stiff.yaml
+  together 1 'the step 1 is not below the bound' stiff.yaml --h 1
+done
 sed 's/exp(/sqrt(x - 0.5)*exp(/' wave.yaml >nan.yaml
 sed 's/0.9, 0.13/3, 4/' probes.yaml >outside.yaml
 together 2 'the start is not finite at vertex' nan.yaml # on one process, on which the others wait

@@ -32,6 +32,14 @@ for command in $commands; do
   as 2 "$command" other.yaml --out other.csv
   [ $code -eq 0 ] && [ ! -s out ] && [ ! -s err ] || fail "the third of $command: $(cat err)"
 done
+# So do they where there is no command.
+for command in nonsense --version; do
+  as 2 $command
+  [ $code -eq 0 ] && [ ! -s out ] && [ ! -s err ] || fail "the third of $command: $(cat out err)"
+done
+as 0 nonsense
+[ $code -eq 2 ] || fail "no command: exit code $code"
+says err "unknown command 'nonsense'" 'no command'
 [ "$(ls)" = "cart.yaml
 err
 out" ] || fail "files: $(ls)"

@@ -111,7 +111,8 @@ as_one() {
   same one.csv all.csv "$count processes, $*"
 }
 
-# drawn N OPTION FILE SCENE OPTION...: N processes write the files of one.
+# drawn N OPTION FILE SCENE OPTION...: N processes write the files of one, and say the same. MPI may
+# have words of its own.
 drawn() {
   count=$1 option=$2 file=$3 drawn=../$4
   shift 4
@@ -122,6 +123,10 @@ drawn() {
     fail "$*: dvi run --$option fails"
   (cd together && by "$count" "$@" --out rows.csv "--$option" "$file" 2>said) ||
     fail "$*: $count processes fail with --$option"
+  for where in alone together; do
+    grep '^dvi: ' $where/said >words
+    mv words $where/said
+  done
   diff -r alone together || fail "$*: $count processes draw other files with --$option"
 }
 

@@ -33,6 +33,16 @@ same whole.csv rest.csv 'one goes on from a state of three'
 expect 2 'a state of a mechanical system' run kepler --method verlet \
   --h 0.1 --checkpoint a.h5
 says err 'is a state in parts by its name' 'a state of a mechanical system'
+expect 2 'a state in parts of one process' run kink.yaml --method midpoint --h 0.05 \
+  --resume all.h5
+says err 'midpoint of one process .* or start 2 processes or more' 'a state in parts of one process'
+expect 1 'a state as a mesh' mesh all.h5
+says err 'its layout is "dvi state 1" and not "dvi mesh 1"' 'a state as a mesh'
+if [ -e "$(dirname "$dvi")/dvi_hdf5.so" ]; then
+  "$dvi" run wave.yaml --final --out rows.h5 || fail "no rows in HDF5"
+  expect 1 'rows as a mesh' mesh rows.h5
+  says err 'it has no text "layout": it is of another kind' 'rows as a mesh'
+fi
 
 # A mesh that processes read in parts.
 sed 's/^mesh: .*/mesh: {file: torus.h5}/' torus.yaml >parts.yaml

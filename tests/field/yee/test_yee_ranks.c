@@ -100,7 +100,8 @@ START_TEST(bad_divisions_are_refused)
   refuse(&small, &ranks, DVI_BAD_ARGUMENT, "by 0 x 1 x 0 parts, where 0 is any number");
   ranks = good, ranks.count = 3;
   refuse(&small, &ranks, DVI_BAD_ARGUMENT,
-         "yee: 3 x 5 x 1 boxes cannot be divided among 3 processes so that each");
+         "yee: 3 x 5 x 1 boxes cannot be divided among 3 processes so that each of them "
+         "has 2 boxes of y; run fewer processes");
   refuse(&line, &good, DVI_UNSUPPORTED, "yee: a grid of one axis cannot be divided");
 }
 END_TEST

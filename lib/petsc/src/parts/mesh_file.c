@@ -28,7 +28,8 @@ static dvi_status read_kind(const dvi__slabs *file, dvi__mesh_head *head)
 {
   char text[32];
   DVI_TRY(dvi__slabs_read_text(file, "layout", sizeof text, text));
-  if (strcmp(text, layout) != 0) return dvi__slabs_refuse(file, "its layout is not \"%s\"", layout);
+  if (strcmp(text, layout) != 0)
+    return dvi__slabs_refuse(file, "its layout is \"%s\" and not \"%s\"", text, layout);
   DVI_TRY(dvi__slabs_read_text(file, "kind", sizeof text, text));
   head->kind = strcmp(text, "boxes") == 0 ? DVI_BOXES : DVI_SIMPLICES;
   if (head->kind == DVI_BOXES || strcmp(text, "simplices") == 0) return DVI_OK;

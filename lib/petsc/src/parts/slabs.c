@@ -320,5 +320,6 @@ dvi_status dvi__slabs_read_text(const dvi__slabs *file, const char *name, size_t
   if (type >= 0) (void)H5Tclose(type);
   if (set >= 0) (void)H5Dclose(set);
   return is_read ? DVI_OK
-                 : dvi__slabs_refuse(file, "it has no text \"%s\", or that is damaged", name);
+                 : dvi__slabs_refuse(
+                       file, "it has no text \"%s\": it is of another kind, or damaged", name);
 }

@@ -203,7 +203,7 @@ static dvi_status read_rest(const state_file *f, unsigned char **bytes, size_t *
   dvi__slab slab = {.name = "rest", .type = DVI__INT8};
   DVI_TRY(dvi__slabs_read_text(f->file, "layout", sizeof text, text));
   if (strcmp(text, layout) != 0)
-    return dvi__slabs_refuse(f->file, "its layout is not \"%s\"", layout);
+    return dvi__slabs_refuse(f->file, "its layout is \"%s\" and not \"%s\"", text, layout);
   DVI_TRY(dvi__slabs_shape(f->file, slab.name, &slab.rows, &width));
   *size = (size_t)slab.rows;
   *bytes = dvi__allocate(*size, 1);

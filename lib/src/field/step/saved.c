@@ -282,6 +282,21 @@ static dvi_status refuse_integrator(const dvi__saved_march *march, const dvi__se
       sections->name);
 }
 
+static dvi_status check_field(const dvi__saved_march *march, const char *name,
+                              const dvi__march_place *at)
+{
+  if (at->dt != march->at->dt)
+    return dvi__fail(DVI_BAD_FILE,
+                     "march: %s is of another field, or of another step: it has dt = %.17g, and "
+                     "this march %.17g",
+                     name, at->dt, march->at->dt);
+  if (at->hash == march->at->hash) return DVI_OK;
+  return dvi__fail(DVI_BAD_FILE,
+                   "march: %s is of another field: its mesh, materials or conditions are not those "
+                   "of this march",
+                   name);
+}
+
 /* Find what was saved, and refuse what another march has saved. */
 static dvi_status find_saved(const dvi__saved_march *march, const dvi__sections *sections,
                              dvi__march_place *at, dvi__section *forms)
@@ -292,11 +307,7 @@ static dvi_status find_saved(const dvi__saved_march *march, const dvi__sections 
   DVI_TRY(refuse_integrator(march, sections));
   DVI_TRY(dvi__section_find(sections, march->method, march->version, sizeof *at, &found));
   memcpy(at, found.content, sizeof *at);
-  if (at->hash != march->at->hash || at->dt != march->at->dt)
-    return dvi__fail(DVI_BAD_FILE,
-                     "march: %s is of another field, or of another step: it has dt = %.17g, and "
-                     "this march %.17g",
-                     sections->name, at->dt, march->at->dt);
+  DVI_TRY(check_field(march, sections->name, at));
   return dvi__section_find(sections, "forms", 1, numbers * sizeof(double), forms);
 }
 

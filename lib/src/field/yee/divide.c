@@ -85,8 +85,9 @@ static dvi_status refuse_parts(const dvi_yee_ranks *r, const dvi__yee *y)
                    parts[1], parts[2]);
   return dvi__fail(DVI_BAD_ARGUMENT,
                    "yee: %d x %d x %d boxes cannot be divided among %d processes%s so that each of "
-                   "them has 2 boxes of y and of z; run fewer processes",
-                   y->axis[0].cells, y->axis[1].cells, y->axis[2].cells, r->count, asked);
+                   "them has 2 boxes of y%s; run fewer processes",
+                   y->axis[0].cells, y->axis[1].cells, y->axis[2].cells, r->count, asked,
+                   y->axes > 2 ? " and of z" : "");
 }
 
 static dvi_status take_parts(const dvi_yee_ranks *r, dvi__yee *y)
