@@ -46,7 +46,7 @@ static int quartic(int64_t count, const double *x, const double *u, double *V, d
   for (int64_t i = 0; i < count; i++) {
     const double s = u[i] * u[i];
     if (V != NULL) V[i] = s / 2 + s * s / 4;
-    if (V_u != NULL) V_u[i] = u[i] + s * u[i];
+    if (V_u != NULL) V_u[i] = u[i] + s * u[i] + (mood == JUMPING ? slopes % 7 : 0);
     if (V_uu != NULL) V_uu[i] = mood == PUSHING ? -1e6 : 1 + 3 * s;
   }
   return 0;

@@ -10,8 +10,9 @@ typedef struct problem {
   int is_fixed, has_potential;
 } problem;
 
-/* What the potential does: it is good, fails on the last process, or pushes apart. */
-extern enum mood { GOOD, FAILING, PUSHING } mood;
+/* What the potential does: it is good, fails on the last process, pushes apart, or has another slope
+ * whenever it is asked for. */
+extern enum mood { GOOD, FAILING, PUSHING, JUMPING } mood;
 extern int slopes; /* how often its derivative was asked for */
 
 dvi_field *make_field(const dvi_mesh *mesh, const problem *p);

@@ -57,7 +57,9 @@ static dvi_status diagonal(void *of, const double *x, double *d)
   const int64_t n = s->field->unknowns;
   const double factor = s->h * s->h / 12;
   DVI_TRY(dvi__implicit_diagonal(s, factor, 1, x, d));
-  return dvi__implicit_diagonal(s, factor, stretch, x + n, d + n);
+  DVI_TRY(dvi__implicit_diagonal(s, factor, stretch, x + n, d + n));
+  DVI_TRY(dvi__implicit_check_curvature(s, 3, d));
+  return dvi__implicit_check_curvature(s, 3, d + n);
 }
 
 static void equations(const dvi__implicit_step *s, dvi__field_equations *equations)

@@ -1,6 +1,6 @@
-/* The implicit midpoint rule for fields on shares of a mesh (field/implicit/midpoint_step.h). All
- * steps of a march are equal. What is asked for at a time between them is the end of a shorter step
- * from the last one on, which is made beside the state. */
+/* Marches by implicit steps for fields on shares of a mesh (field/implicit/step.h). All steps of a
+ * march are equal. What is asked for at a time between them is the end of a shorter step from the
+ * last one on, which is made beside the state. */
 #include "field/implicit/march.h"
 
 #include <float.h>

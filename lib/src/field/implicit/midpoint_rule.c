@@ -52,7 +52,8 @@ static dvi_status residual(void *of, const double *x, double *r)
 static dvi_status diagonal(void *of, const double *x, double *d)
 {
   dvi__implicit_step *s = of;
-  return dvi__implicit_diagonal(s, s->h * s->h / 4, 1, x, d);
+  DVI_TRY(dvi__implicit_diagonal(s, s->h * s->h / 4, 1, x, d));
+  return dvi__implicit_check_curvature(s, 1, d);
 }
 
 static void equations(const dvi__implicit_step *s, dvi__field_equations *equations)

@@ -1,5 +1,6 @@
 #include "field/implicit/step.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "core/memory.h"
@@ -57,6 +58,20 @@ dvi_status dvi__implicit_diagonal(dvi__implicit_step *s, double factor, double b
   DVI_TRY(check(f, d));
   for (int64_t i = 0; i < f->unknowns; i++) d[i] *= factor;
   return DVI_OK;
+}
+
+dvi_status dvi__implicit_check_curvature(const dvi__implicit_step *s, double times, const double *d)
+{
+  const dvi_field *f = s->field;
+  double least = 1;
+  for (int64_t i = 0; i < f->unknowns; i++)
+    if (dvi__owns(f->mesh, f->degree, f->unknown[i]))
+      least = fmin(least, 1 + times * d[i] / f->mass.value[i]);
+  if (least > 0) return DVI_OK;
+  return dvi__fail(DVI_STEP_TOO_LARGE,
+                   "the potential is so concave that the step may have several solutions; h is "
+                   "to be below %.3g",
+                   s->h / sqrt(1 - least));
 }
 
 /* ---- a step ---- */

@@ -82,4 +82,9 @@ dvi_status dvi__implicit_force(dvi__implicit_step *s, double by, const double *x
 dvi_status dvi__implicit_diagonal(dvi__implicit_step *s, double factor, double by, const double *x,
                                   double *d);
 
+/* Refuse a step if an own M + times d, which is M + h^2/4 w V_uu, is not positive: it may have
+ * several solutions then, of which Newton's method finds any. */
+dvi_status dvi__implicit_check_curvature(const dvi__implicit_step *s, double times,
+                                         const double *d);
+
 #endif
