@@ -10,8 +10,8 @@ typedef struct problem {
   int is_fixed, has_potential;
 } problem;
 
-/* What the potential does: it is good, fails on the last process, pushes apart, or has another slope
- * whenever it is asked for. */
+/* What the potential does: it is good, fails on the last process, pushes apart, or has another
+ * slope whenever it is asked for. */
 extern enum mood { GOOD, FAILING, PUSHING, JUMPING } mood;
 extern int slopes; /* how often its derivative was asked for */
 
