@@ -20,7 +20,6 @@ static const char ended_first[] =
 
 static bool is_echo;               /* this process fails because another one did */
 static const petsc_module *module; /* NULL in a process that is alone */
-static const petsc_module *writer; /* which may be there without others, too */
 static int own_rank, rank_count = 1;
 static FILE *kept;      /* what a process prints that is not the first one */
 static int spoken = -1; /* its standard error */
@@ -60,11 +59,14 @@ static bool keep_output(void)
          freopen("/dev/null", "w", stdout) != NULL && dup2(fileno(kept), STDERR_FILENO) >= 0;
 }
 
-/* Load the module. The parts of MPI that are loaded later look for its names. */
+/* Load the module, once. The parts of MPI that are loaded later look for its names. */
 static const petsc_module *load(void)
 {
+  static const petsc_module *loaded;
+  if (loaded != NULL) return loaded;
   void *library = dlopen(module_name, RTLD_NOW | RTLD_GLOBAL);
-  return library != NULL ? dlsym(library, symbol_name) : NULL;
+  if (library != NULL) loaded = dlsym(library, symbol_name);
+  return loaded;
 }
 
 int ranks_begin(void)
@@ -91,8 +93,7 @@ int ranks_begin(void)
 /* Load the module, or complain. */
 static const petsc_module *load_alone(void)
 {
-  void *library = dlopen(module_name, RTLD_NOW | RTLD_GLOBAL);
-  const petsc_module *found = library != NULL ? dlsym(library, symbol_name) : NULL;
+  const petsc_module *found = load();
   if (found == NULL)
     (void)usage_error("this dvi has no module for processes that share a mesh (%s); build dvi with "
                       "-DDVI_PETSC=ON",
@@ -190,56 +191,52 @@ dvi_status ranks_read(const char *path, dvi_mesh **share, void *user)
   return module->read(path, share);
 }
 
-int ranks_read_mesh(const char *path, dvi_mesh **mesh)
+/* Complain if files in parts cannot be written. */
+static int check_writer(const char *path, const char *what)
 {
-  const int code = ranks_begin_alone();
-  if (code != DONE) return code;
-  const dvi_status status = module->read_whole(path, mesh);
-  module->end();
-  module = NULL;
-  return status == DVI_OK ? DONE : library_error(status);
-}
-
-/* Load what writes files in parts. */
-static int load_writer(const char *path, const char *what)
-{
-  if (writer == NULL) writer = module != NULL ? module : load();
-  return writer != NULL
+  return load() != NULL
              ? DONE
              : usage_error("'%s' is a %s that several processes read in parts, and this dvi has no "
                            "module for it (%s); build dvi with -DDVI_PETSC=ON",
                            path, what, dlerror());
 }
 
-static const petsc_module *reader; /* of files in parts, in a process that is alone */
+static bool reads; /* MPI has been started, for files in parts, in a process that is alone */
 
-static void end_reader(void)
+static void end_reading(void)
 {
-  reader->end();
+  load()->end();
 }
 
 /* MPI can be started once in a process, and ends with it. */
-static void start_reader(void)
+static void start_reading(void)
 {
   int rank, count;
-  const petsc_module *found = load();
-  if (found == NULL || !found->start(&rank, &count)) return;
-  reader = found;
-  (void)atexit(end_reader);
+  reads = load() != NULL && load()->start(&rank, &count);
+  if (reads) (void)atexit(end_reading);
 }
 
 dvi_status ranks_read_whole(const char *path, dvi_mesh **mesh, void *user)
 {
   (void)user;
-  if (reader == NULL) start_reader();
-  return reader != NULL ? reader->read_whole(path, mesh) : DVI_OK;
+  if (!reads) start_reading();
+  return reads ? load()->read_whole(path, mesh) : DVI_OK;
+}
+
+int ranks_read_mesh(const char *path, dvi_mesh **mesh)
+{
+  if (load_alone() == NULL) return USAGE;
+  const dvi_status status = ranks_read_whole(path, mesh, NULL);
+  if (reads) return status == DVI_OK ? DONE : library_error(status);
+  complain("MPI and PETSc could not be started");
+  return FAILED;
 }
 
 int ranks_write_mesh(const dvi_mesh *mesh, const char *path)
 {
-  const int code = load_writer(path, "mesh");
+  const int code = check_writer(path, "mesh");
   if (code != DONE) return code;
-  const dvi_status status = writer->write(mesh, path);
+  const dvi_status status = load()->write(mesh, path);
   return status == DVI_OK ? DONE : library_error(status);
 }
 
@@ -252,17 +249,17 @@ bool ranks_part_state(const char *path)
 
 int ranks_prepare_state(const char *path)
 {
-  return ranks_part_state(path) ? load_writer(path, "state") : DONE;
+  return ranks_part_state(path) ? check_writer(path, "state") : DONE;
 }
 
 dvi_status ranks_save(const dvi_march *march, const char *path)
 {
-  return ranks_part_state(path) ? writer->save(march, path) : dvi_march_save(march, path);
+  return ranks_part_state(path) ? load()->save(march, path) : dvi_march_save(march, path);
 }
 
 dvi_status ranks_load(dvi_march *march, const char *path)
 {
-  return ranks_part_state(path) ? writer->load(march, path) : dvi_march_load(march, path);
+  return ranks_part_state(path) ? load()->load(march, path) : dvi_march_load(march, path);
 }
 
 const dvi_yee_ranks *ranks_grid(void)

@@ -13,8 +13,8 @@
 #include "load/elastic.h"
 #include "load/field.h"
 #include "module/ranks.h"
-#include "shares/exchange.h"
 #include "shares/blocks.h"
+#include "shares/exchange.h"
 #include "shares/stand_in.h"
 
 enum { RANKS_SHOWN = 16, HOW_SIZE = 64, SENTENCE_SIZE = 512 };

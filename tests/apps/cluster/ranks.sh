@@ -159,14 +159,20 @@ goes_on() {
   fi
 }
 
-# every_way SCENE OPTION...: checkpoints go on with other numbers of processes.
-every_way() {
-  by 1 "$@" --t-end 0.4 --out half.csv --checkpoint half.state || fail "$*: no checkpoint"
+# other_counts ENDING SCENE OPTION...: checkpoints go on with other numbers of processes.
+other_counts() {
+  rows=csv state=$1
+  shift
+  by 1 "$@" --t-end 0.4 --out half.csv --checkpoint "half.$state" || fail "$*: no checkpoint"
   by 1 "$@" --t-end 1 --out whole.csv || fail "$*: no run"
-  rows=csv state=state
   goes_on 1 3 "$@"
   goes_on 3 1 "$@"
   goes_on 2 4 "$@"
+}
+
+# every_way SCENE OPTION...: the same, and with rows in files of HDF5.
+every_way() {
+  other_counts state "$@"
   command -v h5diff >/dev/null && [ -e "$modules/dvi_hdf5.so" ] || return
   rows=h5
   rm -f whole.h5
@@ -177,17 +183,9 @@ every_way wave.yaml --h 0.002 --every 4
 every_way grid.yaml --h 0.01 --every 5
 every_way solid.yaml --h 0.004 --every 5 --method verlet
 
-# in_parts SCENE OPTION...: the same with states in parts.
-in_parts() {
-  by 1 "$@" --t-end 0.4 --out half.csv --checkpoint half.h5 || fail "$*: no state in parts"
-  by 1 "$@" --t-end 1 --out whole.csv || fail "$*: no run"
-  rows=csv state=h5
-  goes_on 1 3 "$@"
-  goes_on 3 1 "$@"
-  goes_on 2 4 "$@"
-}
-in_parts block.yaml --h 0.01 --every 5
-in_parts wave.yaml --h 0.002 --every 4
+# States in parts.
+other_counts h5 block.yaml --h 0.01 --every 5
+other_counts h5 wave.yaml --h 0.002 --every 4
 by 2 kink.yaml --method midpoint --h 0.05 --t-end 0.5 --out half.csv --checkpoint kink.h5
 by 3 kink.yaml --method midpoint --h 0.05 --t-end 1 --out rest.csv --resume kink.h5
 by 2 kink.yaml --method midpoint --h 0.05 --t-end 1 --out whole.csv
